@@ -22,8 +22,9 @@ class NewestWork {
  public:
   using Stale = std::function<bool()>;  ///< whether a newer wish waits
   using Work = std::function<std::shared_ptr<const Result>(const Wish& wish, const Stale& isStale)>;
-  /// `make`: called on the thread at the first wish. A result of null changes nothing.
-  explicit NewestWork(std::function<Work()> make) : thread_([this, make = std::move(make)] { run(make); }) {}
+  /// `make`: called on the thread at the first wish. A result of null changes nothing. `told`: called there when a wish is done.
+  explicit NewestWork(std::function<Work()> make, std::function<void()> told = {})
+      : told_(std::move(told)), thread_([this, make = std::move(make)] { run(make); }) {}
   ~NewestWork() {
     {
       const std::lock_guard lock(mutex_);
@@ -91,9 +92,11 @@ class NewestWork {
       if (result) newest_ = std::move(result);
       error_ = std::move(error);
       isBusy_ = wish_.has_value();
+      if (told_) told_();
     }
   }
 
+  std::function<void()> told_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::optional<Wish> wish_;

@@ -59,6 +59,7 @@ struct PictureMaker::Desk {
   std::unique_ptr<CameraLine> line;
   Tier tier = Tier::Sketch;
   int lastFrame = -1;
+  bool isKnown = false;  ///< the plan of what is to be drawn next needs not be made
   /// What is made beside, and what is left to end by itself; each keeps the scene that it reads.
   struct Beside {
     ViewedScenePointer scene;
@@ -101,6 +102,7 @@ struct PictureMaker::Desk {
     const bool sameBodies = scene && scene->geometry == wish.scene->geometry && camera == wish.camera;
     const bool sameAsked = sameBodies && cameraOf(*scene).spectral.accuracy == wish.scene->simulation.cameras[camera].spectral.accuracy;
     leave();
+    isKnown = false;
     scene = wish.scene;
     camera = wish.camera;
     lastFrame = -1;
@@ -113,18 +115,10 @@ struct PictureMaker::Desk {
       line = std::make_unique<CameraLine>(scene->simulation, c, library,
                                           std::make_unique<CameraDrawing>(scene->simulation, c, std::move(plan), library, bodies), true);
       tier = Tier::Edited;
-      planBeside(Tier::Asked);
       return;
     }
     line.reset();
-    const bool drafts = hasDraft(scene->simulation, c);
-    if (!drafts) {
-      drawnScene = scene;
-      takeBodies(*scene);
-      line = std::make_unique<CameraLine>(scene->simulation, c, library, bodies, std::function<void(double)>());
-      tier = Tier::Asked;
-      return;
-    }
+    if (sameAsked && tier == Tier::Asked && !hasDraft(scene->simulation, c)) return drawAsAsked();
     drawnScene = sketchOf(*scene);
     takeBodies(*drawnScene);
     const Camera& sketched = cameraOf(*drawnScene);
@@ -132,7 +126,6 @@ struct PictureMaker::Desk {
     line = std::make_unique<CameraLine>(drawnScene->simulation, sketched, library,
                                         std::make_unique<CameraDrawing>(drawnScene->simulation, sketched, std::move(plan), library, bodies), true);
     tier = Tier::Sketch;
-    planBeside(Tier::Draft);
   }
 
   void planBeside(Tier next) {
@@ -144,6 +137,11 @@ struct PictureMaker::Desk {
 
   /// Whether something better draws from here on.
   bool takeOver() {
+    if (isKnown) {
+      isKnown = false;
+      drawAsAsked();
+      return true;
+    }
     if (!beside || !beside->made->isReady()) return false;
     const Tier next = beside->tier;
     std::vector<DrawingsBeside::Made> made = beside->made->take();
@@ -155,7 +153,25 @@ struct PictureMaker::Desk {
     line = std::make_unique<CameraLine>(scene->simulation, cameraOf(*scene), library, std::move(made[0].drawing), next == Tier::Draft);
     tier = next;
     lastFrame = -1;
-    if (next == Tier::Draft) planBeside(Tier::Asked);
+    return true;
+  }
+
+  /// By its plan, which is at hand.
+  void drawAsAsked() {
+    const Camera& c = cameraOf(*scene);
+    line.reset();
+    drawnScene = scene;
+    takeBodies(*scene);
+    line = std::make_unique<CameraLine>(scene->simulation, c, library, bodies, std::function<void(double)>());
+    tier = Tier::Asked;
+    lastFrame = -1;
+  }
+
+  /// What is better than what draws now is made beside, once that has drawn.
+  bool planNext() {
+    if (beside || isKnown || tier == Tier::Asked) return false;
+    if (!hasDraft(scene->simulation, cameraOf(*scene))) return isKnown = true;
+    planBeside(tier == Tier::Sketch ? Tier::Draft : Tier::Asked);
     return true;
   }
 
@@ -183,6 +199,7 @@ struct PictureMaker::Desk {
     const WorldState state = stateAt(wish.time_s);
     picture->frame = line->frame(image, state, frame, stateAt);
     const CameraState at = cameraAt(c, state);
+    picture->image = std::make_shared<const CameraImage>(image);
     picture->pose = image.pointing ? image.pointing->followed.pose : at.pose;
     picture->pinhole = at.pinhole;
     const Plan& plan = line->renderer().plan();
@@ -196,7 +213,8 @@ struct PictureMaker::Desk {
   }
 };
 
-PictureMaker::PictureMaker(const ShaderLibrary& library) : library_(library), since_(Clock::now()), thread_([this] { run(); }) {}
+PictureMaker::PictureMaker(const ShaderLibrary& library, std::function<void()> told)
+    : library_(library), told_(std::move(told)), since_(Clock::now()), thread_([this] { run(); }) {}
 
 PictureMaker::~PictureMaker() {
   {
@@ -244,15 +262,20 @@ void PictureMaker::run() {
     status_.error = error;
   };
   const auto awaited = [&]() -> std::string {
+    if (desk && desk->isKnown) return "preparing";
     if (!desk || !desk->beside) return "";
     return desk->beside->tier == Tier::Draft ? "planning a draft" : "planning";
   };
+  try {
+    desk = std::make_unique<Desk>(library_);
+  } catch (const std::exception&) {  // said with the first wish
+  }
   for (;;) {
     PictureWish wish;
     bool fresh = false;
     {
       std::unique_lock lock(mutex_);
-      wake_.wait_for(lock, kLook, [this] { return isNew_ || ends_; });
+      if (!desk || !desk->isKnown) wake_.wait_for(lock, kLook, [this] { return isNew_ || ends_; });
       if (ends_) break;
       if (!wish_) continue;
       wish = *wish_;
@@ -275,14 +298,17 @@ void PictureMaker::run() {
       }
       if (!draws) continue;
       auto picture = desk->draw(wish, ++number);
+      if (desk->planNext()) say(awaited(), "", true);
       const std::lock_guard lock(mutex_);
       newest_ = std::move(picture);
-      isDone_ = !isNew_ && !desk->beside;
+      isDone_ = !isNew_ && !desk->beside && !desk->isKnown;
+      if (told_) told_();
     } catch (const std::exception& e) {
       if (desk) desk->leave();
       say("", e.what(), true);
       const std::lock_guard lock(mutex_);
       isDone_ = !isNew_;
+      if (told_) told_();
     }
   }
   desk.reset();

@@ -2,6 +2,7 @@
 // Pictures for a window, drawn by a thread of its own to the newest wish: at once by a sketch, then by a draft's plan, then as asked, each made beside.
 #include <chrono>
 #include <condition_variable>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include "scenarios/view/hand_changes.hpp"
 #include "scenarios/view/viewed_scene.hpp"
+#include "sim/camera/camera_image.hpp"
 #include "sim/frame/frame.hpp"
 #include "sim/gl/shader_assembler.hpp"
 
@@ -40,9 +42,10 @@ struct ShownPicture {
   int groups = 0;                          ///< wavelengths, or groups of them, that it is made of
   std::vector<std::string> kept, dropped;  ///< terms
   double draw_ms = 0.0;
-  Pose pose;                 ///< of the camera, local frame
-  Pinhole pinhole;           ///< at its time
-  std::uint64_t number = 0;  ///< rises by one with each picture
+  Pose pose;                                 ///< of the camera, local frame
+  Pinhole pinhole;                           ///< at its time
+  std::shared_ptr<const CameraImage> image;  ///< before the sensor's stages; null: of a file
+  std::uint64_t number = 0;                  ///< rises by one with each picture
 };
 using ShownPicturePointer = std::shared_ptr<const ShownPicture>;
 
@@ -55,8 +58,8 @@ struct MakerStatus {
 
 class PictureMaker {
  public:
-  /// The library must outlive it.
-  explicit PictureMaker(const ShaderLibrary& library);
+  /// The library must outlive it. `told`: called on the drawing thread when there is another picture, or why there is none.
+  explicit PictureMaker(const ShaderLibrary& library, std::function<void()> told = {});
   ~PictureMaker();
   PictureMaker(const PictureMaker&) = delete;
   PictureMaker& operator=(const PictureMaker&) = delete;
@@ -73,6 +76,7 @@ class PictureMaker {
   struct Desk;
   void run();
   const ShaderLibrary& library_;
+  std::function<void()> told_;
   mutable std::mutex mutex_;
   std::condition_variable wake_;
   std::optional<PictureWish> wish_;

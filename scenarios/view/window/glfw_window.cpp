@@ -9,6 +9,7 @@
 #include <cmath>
 #include <filesystem>
 #include <stdexcept>
+#include <utility>
 
 #include "backends/imgui_impl_glfw.h"
 #include "backends/imgui_impl_opengl3.h"
@@ -49,7 +50,8 @@ struct GlfwWindow::Own {
   bool isScripted = false;
   ImVec2 mouse{-1e6f, -1e6f};
   std::array<bool, 3> isDown{}, wasPressed{};
-  bool keeps = false;
+  bool heard = true, keeps = false;
+  double heard_s = 0.0;
   Rgb8Image kept;
   ~Own() {
     if (ImGui::GetCurrentContext()) {
@@ -96,27 +98,29 @@ GlfwWindow::GlfwWindow(const WindowOptions& options) : own_(std::make_unique<Own
 
 GlfwWindow::~GlfwWindow() = default;
 
-void GlfwWindow::onCursor(double x, double y) { own_->mouse = ImVec2(static_cast<float>(x), static_cast<float>(y)); }
+void GlfwWindow::onCursor(double x, double y) { own_->heard = true, own_->mouse = ImVec2(static_cast<float>(x), static_cast<float>(y)); }
 
 void GlfwWindow::onButton(int button, bool down, int mods) {
+  own_->heard = true;
   if (button < 0 || button >= 3) return;
   own_->isDown[static_cast<std::size_t>(button)] = down;
   if (down) own_->wasPressed[static_cast<std::size_t>(button)] = true;
   ImGui_ImplGlfw_MouseButtonCallback(own_->window, button, down ? GLFW_PRESS : GLFW_RELEASE, mods);
 }
 
-void GlfwWindow::onScroll(double x, double y) { ImGui_ImplGlfw_ScrollCallback(own_->window, x, y); }
+void GlfwWindow::onScroll(double x, double y) { own_->heard = true, ImGui_ImplGlfw_ScrollCallback(own_->window, x, y); }
 
 void GlfwWindow::onKey(int key, bool down, int mods) {
+  own_->heard = true;
   ImGui_ImplGlfw_KeyCallback(own_->window, key, 0, down ? GLFW_PRESS : GLFW_RELEASE, mods);
   if (!own_->isScripted) return;
   ImGuiIO& io = ImGui::GetIO();
   io.KeyCtrl = mods & GLFW_MOD_CONTROL, io.KeyShift = mods & GLFW_MOD_SHIFT, io.KeyAlt = mods & GLFW_MOD_ALT;
 }
 
-void GlfwWindow::onChar(unsigned code) { ImGui_ImplGlfw_CharCallback(own_->window, code); }
+void GlfwWindow::onChar(unsigned code) { own_->heard = true, ImGui_ImplGlfw_CharCallback(own_->window, code); }
 
-void GlfwWindow::beginFrame(double wait_s) {
+bool GlfwWindow::beginFrame(double wait_s) {
   if (wait_s > 0.0) glfwWaitEventsTimeout(wait_s);
   else glfwPollEvents();
   ImGui_ImplOpenGL3_NewFrame();
@@ -126,6 +130,10 @@ void GlfwWindow::beginFrame(double wait_s) {
   for (std::size_t b = 0; b < 3; ++b) io.MouseDown[b] = own_->isDown[b] || own_->wasPressed[b];
   own_->wasPressed = {};
   ImGui::NewFrame();
+  constexpr double kLately_s = 0.7;
+  const double now_s = glfwGetTime();
+  if (std::exchange(own_->heard, false) || own_->isDown[0] || own_->isDown[1]) own_->heard_s = now_s;
+  return now_s - own_->heard_s < kLately_s;
 }
 
 void GlfwWindow::endFrame() {
@@ -145,6 +153,8 @@ bool GlfwWindow::isClosed() {
   if (const std::string gone = own_->errors.fatal(); !gone.empty()) throw std::runtime_error("view: " + gone);
   return glfwWindowShouldClose(own_->window) == GLFW_TRUE;
 }
+
+void GlfwWindow::wake() { glfwPostEmptyEvent(); }
 
 void GlfwWindow::setTitle(const std::string& title) { glfwSetWindowTitle(own_->window, title.c_str()); }
 

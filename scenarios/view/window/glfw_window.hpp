@@ -24,8 +24,8 @@ class GlfwWindow {
   GlfwWindow(const GlfwWindow&) = delete;
   GlfwWindow& operator=(const GlfwWindow&) = delete;
 
-  /// Takes what mouse and keys have done, waiting for it at most so long.
-  void beginFrame(double wait_s);
+  /// Takes what mouse and keys have done, waiting for it at most so long. Whether they did anything lately.
+  bool beginFrame(double wait_s);
   void endFrame();
   /// Throws std::runtime_error where the display is gone.
   bool isClosed();
@@ -38,6 +38,9 @@ class GlfwWindow {
   void keepPixels(bool keep);
   /// What the last frame that was kept showed.
   const Rgb8Image& pixels() const;
+
+  /// Ends a wait of beginFrame(); from any thread.
+  static void wake();
 
   /// As GLFW's callbacks: whoever calls them.
   void onCursor(double x, double y);

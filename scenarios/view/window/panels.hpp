@@ -24,6 +24,7 @@ class Panel {
 
 std::unique_ptr<Panel> makeProbePanel();
 std::unique_ptr<Panel> makeScenePanel();
+std::unique_ptr<Panel> makeDialPanel();
 
 /// Pictures of the layers shown, with overlays and tools, in what is left of the window.
 class PicturesPanel {

@@ -220,7 +220,8 @@ bool ScriptRunner::step(double now_s) {
     const ScriptLine line = script_[next_++];
     begin(line, now_s);
   }
-  if (actions_.front()()) actions_.pop_front();
+  waits_ = !actions_.front()();
+  if (!waits_) actions_.pop_front();
   return true;
 }
 

@@ -22,6 +22,8 @@ class ScriptRunner {
   ScriptRunner(std::vector<ScriptLine> script, GlfwWindow& window, const Marks& marks, Hooks hooks);
   /// Between two frames; false: it has ended. Errors: UserError where a name is nowhere, or an expectation does not hold.
   bool step(double now_s);
+  /// For something that is not there yet: nothing is done meanwhile.
+  bool isWaiting() const { return waits_; }
 
  private:
   void begin(const ScriptLine& line, double now_s);
@@ -36,6 +38,7 @@ class ScriptRunner {
   std::deque<std::function<bool()>> actions_;  ///< true: done
   std::unique_ptr<VideoWriter> film_;
   double now_s_ = 0.0;
+  bool waits_ = false;
 };
 
 }  // namespace pitviper

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <thread>
+#include <utility>
 
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/view/window/style.hpp"
@@ -17,8 +19,8 @@ namespace {
 
 /// How often saved files are looked for.
 constexpr double kFileLook_s = 0.25;
-/// The longest that a frame of the window waits for something to happen.
-constexpr double kIdle_s = 1.0 / 60.0;
+/// From a frame of the window to the next: where somebody does something or pictures change, and where nothing does; drawing it takes from what is drawn in it.
+constexpr double kBusy_s = 1.0 / 32.0, kIdle_s = 1.0 / 6.0;
 constexpr double kMessage_s = 6.0;
 
 const std::vector<std::pair<std::string, double>>& speeds() {
@@ -95,25 +97,30 @@ const BandTemperature* ViewState::temperatureOf(const std::string& layer) const 
 }
 
 Viewer::Viewer(GlfwWindow& window, const ViewWish& wish)
-    : window_(window), maker_(std::make_unique<PictureMaker>(shaderLibrary())), loader_([] {
-        return [](const ScenarioWish& file, const NewestWork<ScenarioWish, Loaded>::Stale&) {
-          auto loaded = std::make_shared<Loaded>();
-          loaded->file = file.file;
-          try {
-            loaded->scene = readScene(file);
-            if (loaded->scene->simulation.cameras.empty())
-              throw UserError({file.file, 0, 0, -1}, "a scenario without cameras", "one to look through", "add 'cameras:'");
-          } catch (const UserError& e) {
-            loaded->scene.reset();
-            loaded->problem = e.what();
-          }
-          return std::shared_ptr<const Loaded>(std::move(loaded));
-        };
-      }) {
+    : window_(window),
+      maker_(std::make_unique<PictureMaker>(shaderLibrary(), [] { GlfwWindow::wake(); })),
+      loader_(
+          [] {
+            return [](const ScenarioWish& file, const NewestWork<ScenarioWish, Loaded>::Stale&) {
+              auto loaded = std::make_shared<Loaded>();
+              loaded->file = file.file;
+              try {
+                loaded->scene = readScene(file);
+                if (loaded->scene->simulation.cameras.empty())
+                  throw UserError({file.file, 0, 0, -1}, "a scenario without cameras", "one to look through", "add 'cameras:'");
+              } catch (const UserError& e) {
+                loaded->scene.reset();
+                loaded->problem = e.what();
+              }
+              return std::shared_ptr<const Loaded>(std::move(loaded));
+            };
+          },
+          [] { GlfwWindow::wake(); }) {
   state_.wish = wish;
   state_.accuracy = 0.0;
   panels_.push_back(makeProbePanel());
   panels_.push_back(makeScenePanel());
+  panels_.push_back(makeDialPanel());
   if (!wish.scenario.file.empty()) open(wish.scenario.file);
 }
 
@@ -474,6 +481,10 @@ void Viewer::statusLine() {
     ImGui::SameLine();
     ImGui::TextUnformatted(state_.message.c_str());
   }
+  if (state_.picture && firstPicture_s_ < 0.0) firstPicture_s_ = now_s_;
+  if (state_.picture && state_.picture->tier == Tier::Asked && firstAsked_s_ < 0.0) firstAsked_s_ = now_s_;
+  state_.marks.text("first_picture_s", print("%.2f", firstPicture_s_));
+  state_.marks.text("first_as_asked_s", print("%.2f", firstAsked_s_));
   state_.marks.text("message", state_.message);
   state_.marks.text("window_s", print("%.1f", state_.window_s));
   state_.marks.text("pictures_s", print("%.1f", state_.pictures_s));
@@ -515,7 +526,7 @@ void Viewer::helpWindow() {
   ImGui::End();
 }
 
-void Viewer::frame(double now_s) {
+void Viewer::frame() {
   state_.marks.clear();
   const ImVec2 size = ImGui::GetIO().DisplaySize;
   const float text = ImGui::GetTextLineHeight();
@@ -551,7 +562,6 @@ void Viewer::frame(double now_s) {
   problemWindow();
   helpWindow();
   keys();
-  (void)now_s;
 }
 
 void Viewer::run() {
@@ -562,16 +572,23 @@ void Viewer::run() {
                                        [this](const std::string& what, const Location& where) { return isReached(what, where); },
                                        [this](const std::string& file) { writePicture(file); }});
   const auto start = std::chrono::steady_clock::now();
+  const auto elapsed = [start] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
   double last_s = 0.0;
+  bool isBusy = true;
   while (!window_.isClosed()) {
     if (script && !script->step(now_s_)) return;
-    window_.beginFrame(script ? 0.0 : kIdle_s);
-    now_s_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    // Waits for something to happen; then the rest of the shorter time.
+    const bool mayRest = !isBusy && (!script || script->isWaiting());
+    const std::uint64_t before = state_.picture ? state_.picture->number : 0;
+    isBusy = window_.beginFrame(mayRest ? std::max(0.0, last_s + kIdle_s - elapsed()) : 0.0) || state_.isPlaying;
+    if (const double left_s = last_s + kBusy_s - elapsed(); left_s > 0.0) std::this_thread::sleep_for(std::chrono::duration<double>(left_s));
+    now_s_ = elapsed();
     takeLoaded();
     watchFile(now_s_);
     tick(now_s_ - last_s);
     ask();
-    frame(now_s_);
+    isBusy |= state_.picture && state_.picture->number != before;
+    frame();
     window_.endFrame();
     if (std::exchange(shoots_, false)) {
       const std::string file = "pitviper_view.png";

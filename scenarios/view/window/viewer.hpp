@@ -31,7 +31,7 @@ class Viewer {
   void watchFile(double now_s);
   void ask();
   void tick(double seconds);
-  void frame(double now_s);
+  void frame();
   void keys();
   void topBar();
   void lookBar();
@@ -52,7 +52,7 @@ class Viewer {
   std::vector<std::unique_ptr<Panel>> panels_;
   PicturesPanel pictures_;
   std::map<std::filesystem::path, std::filesystem::file_time_type> stamps_;
-  double nextLook_s_ = 0.0, now_s_ = 0.0;
+  double nextLook_s_ = 0.0, now_s_ = 0.0, firstPicture_s_ = -1.0, firstAsked_s_ = -1.0;
   std::uint64_t countedPicture_ = 0;
   double countedFrom_s_ = 0.0;
   int countedFrames_ = 0;
