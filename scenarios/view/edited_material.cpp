@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::array kSharers{CurveKind::Diffuse, CurveKind::Specular, CurveKind::Emissivity};
 
-bool shares(CurveKind kind) { return std::find(kSharers.begin(), kSharers.end(), kind) != kSharers.end(); }
+bool sharesEnergy(CurveKind kind) { return std::find(kSharers.begin(), kSharers.end(), kind) != kSharers.end(); }
 
 }  // namespace
 
@@ -25,7 +25,7 @@ EditedMaterial::EditedMaterial(EditedSurface surface, Libraries libraries) : lib
 EditedMaterial EditedMaterial::named(const std::string& word, const Libraries& libraries) { return {surfaceNamed(word, libraries), libraries}; }
 
 CurveCeiling EditedMaterial::ceilingOf(CurveKind kind) const {
-  if (!shares(kind)) return {};
+  if (!sharesEnergy(kind)) return {};
   std::vector<const EditedCurve*> others;
   for (CurveKind other : kSharers)
     if (other != kind && has(other)) others.push_back(&curve(other));
@@ -38,7 +38,6 @@ void EditedMaterial::become(EditedSurface next) {
   undone_.clear();
   now_ = std::move(next);
   ++revision_;
-  made_ = nullptr;
 }
 
 void EditedMaterial::put(CurveKind kind, EditedCurve curve) {
@@ -128,7 +127,7 @@ void EditedMaterial::setFilm(const std::optional<EditedFilm>& film) {
                     "a substrate that is a number, or an apparent reflectance", "count what comes out");
   auto made = madeMaterial(next, libraries_);
   become(std::move(next));
-  made_ = std::move(made);
+  made_ = std::move(made), madeAt_ = revision_;
 }
 
 void EditedMaterial::beginChange() {
@@ -147,7 +146,6 @@ void EditedMaterial::undo() {
   now_ = std::move(done_.back());
   done_.pop_back();
   ++revision_;
-  made_ = nullptr;
 }
 
 void EditedMaterial::redo() {
@@ -157,7 +155,6 @@ void EditedMaterial::redo() {
   now_ = std::move(undone_.back());
   undone_.pop_back();
   ++revision_;
-  made_ = nullptr;
 }
 
 double EditedMaterial::energyAt(double wavelength_um) const {
@@ -171,7 +168,8 @@ double EditedMaterial::energyAt(double wavelength_um) const {
 }
 
 std::shared_ptr<const Material> EditedMaterial::material() const {
-  if (!made_) made_ = madeMaterial(now_, libraries_);
+  // The one before is let go last: facets of one roughness share what takes long.
+  if (!made_ || madeAt_ != revision_) made_ = madeMaterial(now_, libraries_), madeAt_ = revision_;
   return made_;
 }
 

@@ -70,7 +70,8 @@ class EditedMaterial {
   int open_ = 0;
   std::vector<EditedSurface> done_, undone_;
   unsigned long long revision_ = 0;
-  mutable std::shared_ptr<const Material> made_;  ///< of now_, or null
+  mutable std::shared_ptr<const Material> made_;  ///< null: none yet
+  mutable unsigned long long madeAt_ = 0;         ///< the revision that it is of
 };
 
 }  // namespace pitviper

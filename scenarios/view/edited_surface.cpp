@@ -12,27 +12,27 @@
 namespace pitviper {
 namespace {
 
-bool zero(const EditedCurve& curve) {
+bool isZeroCurve(const EditedCurve& curve) {
   return std::all_of(curve.points().begin(), curve.points().end(), [](const CurvePoint& p) { return p.value == 0.0; });
 }
 
-std::string thicknessOf(const EditedFilm& film) { return exactNumber(tidy(film.thickness_um)) + " um"; }
+std::string filmThicknessText(const EditedFilm& film) { return exactNumber(tidy(film.thickness_um)) + " um"; }
 
 /// It stands in text as it is.
-void refuseWord(const std::string& word) {
+void refuseSubstrateWord(const std::string& word) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == '.' || c == '+'; };
   if (word.empty() || !std::all_of(word.begin(), word.end(), plain))
     throw UserError({}, "a substrate called '" + word.substr(0, 60) + "'", "the name of a substance, or a number", "choose one of materials/substances");
 }
 
-Value word(std::string text) {
+Value scalarOf(std::string text) {
   Value v;
   v.kind = Value::Kind::Scalar;
   v.text = std::move(text);
   return v;
 }
 
-Value mapOf(std::vector<std::pair<std::string, Value>> entries) {
+Value treeOf(std::vector<std::pair<std::string, Value>> entries) {
   Value v;
   v.kind = Value::Kind::Map;
   v.keyPlaces.resize(entries.size());
@@ -43,25 +43,26 @@ Value mapOf(std::vector<std::pair<std::string, Value>> entries) {
 /// The component of the text as a tree whose spectra are words: read as any other, without their rows going through text.
 Value filmComponent(const EditedSurface& s) {
   const EditedFilm& film = *s.film;
-  std::vector<std::pair<std::string, Value>> layer{{"index", mapOf({{"n", word("curve")}, {"k", word("curve")}})}, {"thickness", word(thicknessOf(film))}};
-  if (film.coherent) layer.emplace_back("coherent", word(*film.coherent ? "true" : "false"));
+  std::vector<std::pair<std::string, Value>> layer{{"index", treeOf({{"n", scalarOf("curve")}, {"k", scalarOf("curve")}})},
+                                                   {"thickness", scalarOf(filmThicknessText(film))}};
+  if (film.coherent) layer.emplace_back("coherent", scalarOf(*film.coherent ? "true" : "false"));
   Value layers;
   layers.kind = Value::Kind::List;
-  layers.items.push_back(mapOf(std::move(layer)));
-  std::vector<std::pair<std::string, Value>> all{{"reflection", word("microfacet")},
-                                                 {"index", word(film.substrate)},
-                                                 {"roughness", word(exactNumber(tidy(film.roughness)))},
-                                                 {"slopes", word(film.normalSlopes ? "normal" : "ggx")},
+  layers.items.push_back(treeOf(std::move(layer)));
+  std::vector<std::pair<std::string, Value>> all{{"reflection", scalarOf("microfacet")},
+                                                 {"index", scalarOf(film.substrate)},
+                                                 {"roughness", scalarOf(exactNumber(tidy(film.roughness)))},
+                                                 {"slopes", scalarOf(film.normalSlopes ? "normal" : "ggx")},
                                                  {"layers", layers}};
-  if (!zero(*s.curve(CurveKind::Diffuse))) {
-    all.emplace_back("pigment", word("curve"));
-    all.emplace_back("pigment_is", word(film.pigmentApparent ? "apparent" : "body"));
+  if (!isZeroCurve(*s.curve(CurveKind::Diffuse))) {
+    all.emplace_back("pigment", scalarOf("curve"));
+    all.emplace_back("pigment_is", scalarOf(film.pigmentApparent ? "apparent" : "body"));
   }
-  return mapOf(std::move(all));
+  return treeOf(std::move(all));
 }
 
-void addFilm(Material& m, const EditedSurface& s, const Libraries& libraries) {
-  refuseWord(s.film->substrate);
+void addFilmFacets(Material& m, const EditedSurface& s, const Libraries& libraries) {
+  refuseSubstrateWord(s.film->substrate);
   const ReflectionModel& model = *reflectionModels().named("microfacet");
   static const ParameterTable table = componentTable(model);
   const Value component = filmComponent(s);
@@ -135,17 +136,17 @@ std::string materialText(const EditedSurface& s, const std::string& description,
   };
   if (s.film) {
     const EditedFilm& film = *s.film;
-    refuseWord(film.substrate);
+    refuseSubstrateWord(film.substrate);
     out += "  - reflection: microfacet\n    index: " + film.substrate + "\n    roughness: " + exactNumber(tidy(film.roughness)) + "\n";
     if (film.normalSlopes) out += "    slopes: normal\n";
-    if (!zero(*s.curve(CurveKind::Diffuse)))
+    if (!isZeroCurve(*s.curve(CurveKind::Diffuse)))
       out += curve("    pigment", CurveKind::Diffuse) + "    pigment_is: " + (film.pigmentApparent ? "apparent" : "body") + "\n";
     out += "    layers:\n      - index:\n" + curve("          n", CurveKind::FilmIndex) + curve("          k", CurveKind::FilmAbsorption) +
-           "        thickness: " + thicknessOf(film) + "\n";
+           "        thickness: " + filmThicknessText(film) + "\n";
     if (film.coherent) out += std::string("        coherent: ") + (*film.coherent ? "true" : "false") + "\n";
     return out;
   }
-  if (zero(*s.curve(CurveKind::Specular))) out += "  - reflection: lambertian\n" + curve("    reflectance", CurveKind::Diffuse);
+  if (isZeroCurve(*s.curve(CurveKind::Specular))) out += "  - reflection: lambertian\n" + curve("    reflectance", CurveKind::Diffuse);
   else
     out += "  - reflection: spectral_phong\n" + curve("    diffuse", CurveKind::Diffuse) + curve("    specular", CurveKind::Specular) +
            curve("    exponent", CurveKind::Exponent);
@@ -158,8 +159,8 @@ std::shared_ptr<const Material> madeMaterial(const EditedSurface& s, const Libra
   m->name = s.name;
   m->provenance = s.source;
   const auto spectrum = [&](CurveKind kind) { return s.curve(kind)->spectrum(); };
-  if (s.film) addFilm(*m, s, libraries);
-  else if (zero(*s.curve(CurveKind::Specular))) m->reflections.push_back(makeLambertian(spectrum(CurveKind::Diffuse)));
+  if (s.film) addFilmFacets(*m, s, libraries);
+  else if (isZeroCurve(*s.curve(CurveKind::Specular))) m->reflections.push_back(makeLambertian(spectrum(CurveKind::Diffuse)));
   else m->reflections.push_back(makeEditedPhong(spectrum(CurveKind::Diffuse), spectrum(CurveKind::Specular), spectrum(CurveKind::Exponent)));
   m->modifiers.assign(m->reflections.size(), -1);
   if (!s.film && s.curve(CurveKind::Emissivity)) m->given.emplace().spectrum = spectrum(CurveKind::Emissivity);

@@ -3,17 +3,24 @@
 #include <sstream>
 
 #include "scenarios/import/import_yaml.hpp"
+#include "scenarios/reader/builder.hpp"
+#include "scenarios/reader/tables.hpp"
+#include "scenarios/reader/yaml_tree.hpp"
 
 namespace pitviper {
 namespace {
 
-/// The first material of the least of scenarios: nothing in it is of the material.
+/// The first of a scenario's materials. Without cameras: a material need not have data in anyone's band.
 std::shared_ptr<const Material> firstMaterial(const std::string& materials, const std::filesystem::path& base, const Libraries& libraries) {
-  const std::string scene = "materials:\n" + materials +
-                            "background: {temperature: 250 K}\n"
-                            "cameras: [{name: c, film: {width: 1, height: 1}, field_of_view: 1 deg, aperture: 5 mm, heading: 0 deg, "
-                            "channels: [{name: c, response: {band: [3 um, 3.1 um]}}]}]\n";
-  return readScenarioText(scene, "material", base, {}, libraries).materials.at(0);
+  const Value tree = parseYaml("materials:\n" + materials, "material");
+  Simulation simulation;
+  Builder builder(simulation, base, libraries);
+  try {
+    builder.readMaterials(Record(tree, tables::scenario()));
+  } catch (const OutsideSpectrum& e) {
+    throw UserError(tree.where, e.what(), "spectra that cover what they are multiplied with", "extend the table");
+  }
+  return simulation.materials.at(0);
 }
 
 }  // namespace

@@ -15,22 +15,22 @@
 namespace pitviper {
 namespace {
 
-using Function = std::function<double(double wavelength_um)>;
+using OverWavelength = std::function<double(double wavelength_um)>;
 
 /// Of each curve: three that share 1 are lowered by no more than their sum is above, and stay within kCurveTolerance.
-constexpr double kFollow = 0.25 * kCurveTolerance;
+constexpr double kFollowedWithin = 0.25 * kCurveTolerance;
 
 /// What a material says, and what it means.
-struct Said {
+struct SaidMaterial {
   Value tree;
   std::filesystem::path base;
   std::shared_ptr<const Material> material;
 };
 
 /// A function over wavelengths that is straight between its knots, or nearly: looked at there, to both sides (steps), and between.
-class Followed {
+class FollowedPlaces {
  public:
-  Followed(std::vector<double> knots, double low, double high) {
+  FollowedPlaces(std::vector<double> knots, double low, double high) {
     constexpr double kBeside = 2e-6;
     constexpr int kBetween = 8, kAll = 200;
     std::erase_if(knots, [&](double w) { return !(w >= low && w <= high); });
@@ -45,24 +45,24 @@ class Followed {
     std::sort(places_.begin(), places_.end());
     places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
   }
-  std::shared_ptr<const EditedCurve> curve(CurveKind kind, const Function& f, double tolerance) const {
+  std::shared_ptr<const EditedCurve> curve(CurveKind kind, const OverWavelength& f, double tolerance) const {
     Spectrum::Table t{places_, {}, Outside::Hold, axisOf(kind).name};
     for (double w : places_) t.value.push_back(f(w));
     return std::make_shared<const EditedCurve>(EditedCurve::of(Spectrum(std::move(t)), places_.front(), places_.back(), tolerance, axisOf(kind).bounds));
   }
-  double largest(const Function& f) const {
+  double largest(const OverWavelength& f) const {
     double most = -INFINITY;
     for (double w : places_) most = std::max(most, f(w));
     return most;
   }
-  std::shared_ptr<const EditedCurve> curve(CurveKind kind, const Function& f) const { return curve(kind, f, kFollow); }
+  std::shared_ptr<const EditedCurve> curve(CurveKind kind, const OverWavelength& f) const { return curve(kind, f, kFollowedWithin); }
 
  private:
   std::vector<double> places_;
 };
 
 /// Where a material is told: where it has data, and no further than its spectra bend.
-Followed placesOf(const Material& m, double& low, double& high) {
+FollowedPlaces placesOf(const Material& m, double& low, double& high) {
   std::vector<double> knots = m.given ? m.given->knots_um() : std::vector<double>();
   for (const auto& r : m.reflections) {
     const auto own = r->knots_um();
@@ -82,7 +82,7 @@ Followed placesOf(const Material& m, double& low, double& high) {
     if (const double beyond = std::min(high * (1.0 + 4e-6), kLongestWavelength_um); steps(high, beyond)) high = beyond;
   }
   if (high <= low) high = std::min(2.0 * low, kLongestWavelength_um);
-  return Followed(std::move(knots), low, high);
+  return FollowedPlaces(std::move(knots), low, high);
 }
 
 std::string reflectionOf(const Value& component) {
@@ -96,7 +96,7 @@ const std::vector<Value>& componentsOf(const Value& tree) {
   return list ? list->items : none;
 }
 
-bool allPlain(const Value& tree) {
+bool allPlainComponents(const Value& tree) {
   const auto& all = componentsOf(tree);
   return !tree.find("temperatures") && std::all_of(all.begin(), all.end(), [](const Value& c) {
     const std::string kind = reflectionOf(c);
@@ -104,11 +104,11 @@ bool allPlain(const Value& tree) {
   });
 }
 
-void addPlain(EditedSurface& s, const Said& said, const Libraries& libraries, const Followed& places) {
+void addPlain(EditedSurface& s, const SaidMaterial& said, const Libraries& libraries, const FollowedPlaces& places) {
   struct Part {
-    Function share, exponent;
+    OverWavelength share, exponent;
   };
-  std::vector<Function> diffuse;
+  std::vector<OverWavelength> diffuse;
   std::vector<Part> lobes;
   const SpectrumReader spectra = spectraIn(said.base, libraries);
   const auto& components = componentsOf(said.tree);
@@ -127,7 +127,7 @@ void addPlain(EditedSurface& s, const Said& said, const Libraries& libraries, co
   }
   s.curve(CurveKind::Diffuse) = places.curve(CurveKind::Diffuse, [&](double w) {
     double sum = 0.0;
-    for (const Function& f : diffuse) sum += f(w);
+    for (const OverWavelength& f : diffuse) sum += f(w);
     return sum;
   });
   if (lobes.empty()) return;
@@ -146,14 +146,14 @@ void addPlain(EditedSurface& s, const Said& said, const Libraries& libraries, co
     return sum / shares;
   };
   const double largest = std::max(1.0, places.largest(exponent));
-  s.curve(CurveKind::Exponent) = places.curve(CurveKind::Exponent, exponent, kFollow * largest);
+  s.curve(CurveKind::Exponent) = places.curve(CurveKind::Exponent, exponent, kFollowedWithin * largest);
   if (lobes.size() > 1) s.notes.emplace_back("its lobes are drawn as one: their reflectances together, their exponents by share");
   if (largest > axisOf(CurveKind::Exponent).bounds.highest)
     s.notes.push_back(print("an exponent of %.4g has become %.4g", largest, axisOf(CurveKind::Exponent).bounds.highest));
 }
 
 /// Facets under exactly one film, over a substrate that has a name.
-bool oneFilm(const Value& tree) {
+bool hasOneFilm(const Value& tree) {
   const auto& all = componentsOf(tree);
   if (all.size() != 1 || reflectionOf(all[0]) != "microfacet" || tree.find("temperatures") || tree.find("transmission")) return false;
   for (const char* key : {"modifier", "back", "thickness"})
@@ -165,12 +165,12 @@ bool oneFilm(const Value& tree) {
 /// Index and absorption of a film. Wherever it is known.
 void addIndex(EditedSurface& s, const RefractiveIndex& index) {
   const double low = std::max(index.validLow_um(), kShortestWavelength_um), high = std::min(index.validHigh_um(), kLongestWavelength_um);
-  const Followed places(index.knots_um(), low, high);
+  const FollowedPlaces places(index.knots_um(), low, high);
   s.curve(CurveKind::FilmIndex) = places.curve(CurveKind::FilmIndex, [&](double w) { return index(w).real(); });
   s.curve(CurveKind::FilmAbsorption) = places.curve(CurveKind::FilmAbsorption, [&](double w) { return index(w).imag(); });
 }
 
-void addOneFilm(EditedSurface& s, const Said& said, const Libraries& libraries, const Followed& places) {
+void addOneFilm(EditedSurface& s, const SaidMaterial& said, const Libraries& libraries, const FollowedPlaces& places) {
   const Value& component = componentsOf(said.tree)[0];
   static const ParameterTable table = componentTable(*reflectionModels().named("microfacet"));
   const Record r(component, table), layer(r.value("layers").items[0], filmLayerTable());
@@ -184,7 +184,7 @@ void addOneFilm(EditedSurface& s, const Said& said, const Libraries& libraries, 
   addIndex(s, readRefractiveIndex(
                   layer.value("index"), [&](const Value& v, const Parameter& p) { return spectra.read(v, p.unit, p.key); },
                   [&](const std::string& name, const Location& at) { return substanceTree(name, at, libraries); }));
-  Function pigment = [](double) { return 0.0; };
+  OverWavelength pigment = [](double) { return 0.0; };
   if (r.given("pigment")) {
     pigment = spectra.read(r.value("pigment"), "", "pigment");
     const bool number = film.substrate.find_first_not_of("0123456789.") == std::string::npos;
@@ -197,14 +197,14 @@ void addOneFilm(EditedSurface& s, const Said& said, const Libraries& libraries, 
   s.film = std::move(film);
 }
 
-void addEmissivity(EditedSurface& s, const Material& m, const Followed& places) {
+void addEmissivity(EditedSurface& s, const Material& m, const FollowedPlaces& places) {
   if (!m.given) return;
   s.curve(CurveKind::Emissivity) = places.curve(CurveKind::Emissivity, [&](double w) { return m.given->at(w, 0.0); });
   if (m.given->varies()) s.notes.emplace_back("its emissivity is that at normal view");
   if (m.given->modifier >= 0) s.notes.emplace_back("the texture of its emissivity is left out");
 }
 
-EditedSurface surfaceOf(const Said& said, const std::string& name, const Libraries& libraries) {
+EditedSurface surfaceOf(const SaidMaterial& said, const std::string& name, const Libraries& libraries) {
   const Material& m = *said.material;
   if (m.medium) throw UserError(said.tree.where, "'" + name.substr(0, 60) + "' is a medium", "a surface", "choose another");
   EditedSurface s;
@@ -212,10 +212,10 @@ EditedSurface surfaceOf(const Said& said, const std::string& name, const Librari
   if (const Value* text = said.tree.find("description")) s.description = text->text;
   if (const Value* text = said.tree.find("source")) s.source = text->text;
   double low = 0.0, high = 0.0;
-  const Followed places = placesOf(m, low, high);
-  if (oneFilm(said.tree)) {
+  const FollowedPlaces places = placesOf(m, low, high);
+  if (hasOneFilm(said.tree)) {
     addOneFilm(s, said, libraries, places);
-  } else if (allPlain(said.tree)) {
+  } else if (allPlainComponents(said.tree)) {
     addPlain(s, said, libraries, places);
   } else {
     s.curve(CurveKind::Diffuse) = places.curve(CurveKind::Diffuse, [&](double w) { return m.reflectance(w, 0.0); });
@@ -231,7 +231,7 @@ EditedSurface surfaceOf(const Said& said, const std::string& name, const Librari
 }
 
 /// Of optical constants: a polished face at normal view, and what a film of it would have.
-EditedSurface faceOf(const Value& tree, const std::string& name) {
+EditedSurface polishedFace(const Value& tree, const std::string& name) {
   const SpectrumReader reader{SpectrumFiles{}};
   const RefractiveIndex index = readRefractiveIndex(*tree.find("index"), [&](const Value& v, const Parameter& p) { return reader.read(v, p.unit, p.key); }, {});
   EditedSurface s;
@@ -241,7 +241,7 @@ EditedSurface faceOf(const Value& tree, const std::string& name) {
   addIndex(s, index);
   const double low = std::max(index.validLow_um(), kShortestWavelength_um), high = std::min(index.validHigh_um(), kLongestWavelength_um);
   s.curve(CurveKind::Diffuse) =
-      Followed(index.knots_um(), low, high).curve(CurveKind::Diffuse, [&](double w) { return std::norm((index(w) - 1.0) / (index(w) + 1.0)); });
+      FollowedPlaces(index.knots_um(), low, high).curve(CurveKind::Diffuse, [&](double w) { return std::norm((index(w) - 1.0) / (index(w) + 1.0)); });
   s.notes.emplace_back("optical constants: what a polished face reflects at normal view is drawn, alike in all directions; a film has its index");
   s.notes.push_back(print("it is known from %.4g to %.4g um: beyond, the curves are held", low, high));
   return s;
@@ -262,10 +262,10 @@ EditedSurface surfaceNamed(const std::string& word, const Libraries& libraries) 
       throw unknownWord({}, "there is no material and no file", word, names, "check the name");
     }
   } else if (const auto imported = importedMaterial(file)) {
-    Said said{parseYaml(imported->yaml, file.string() + " as YAML"), file.parent_path(), nullptr};
+    SaidMaterial said{parseYaml(imported->yaml, file.string() + " as YAML"), file.parent_path(), nullptr};
     EditedSurface s;
     if (said.tree.find("index")) {
-      s = faceOf(said.tree, file.stem().string());
+      s = polishedFace(said.tree, file.stem().string());
     } else {
       said.material = readMaterialText(imported->yaml, said.base, libraries);
       s = surfaceOf(said, file.stem().string(), libraries);
