@@ -96,7 +96,8 @@ EditedCurve EditedCurve::of(const Spectrum& spectrum, double low_um, double high
     double most = tolerance;
     for (std::size_t k = begin + 1; k < end; ++k) {
       const double line = a.value + (b.value - a.value) * (all[k].wavelength_um - a.wavelength_um) / (b.wavelength_um - a.wavelength_um);
-      if (const double off = std::abs(all[k].value - line); off > most) most = off, worst = k;
+      // Rounding must not choose among places on one line.
+      if (const double off = std::abs(all[k].value - line); off > most * (1.0 + 1e-9)) most = off, worst = k;
     }
     if (worst > begin) {
       ends.push_back(end);

@@ -27,35 +27,45 @@ struct SaidMaterial {
   std::shared_ptr<const Material> material;
 };
 
-/// A function over wavelengths that is straight between its knots, or nearly: looked at there, to both sides (steps), and between.
+/// Wavelengths from which functions are followed: their knots and a grid; between two of them as often halved as the middle is not on their line. Steps are
+/// found so too.
 class FollowedPlaces {
  public:
-  FollowedPlaces(std::vector<double> knots, double low, double high) {
-    constexpr double kBeside = 2e-6;
-    constexpr int kBetween = 8, kAll = 200;
-    std::erase_if(knots, [&](double w) { return !(w >= low && w <= high); });
-    knots.insert(knots.end(), {low, high});
-    std::sort(knots.begin(), knots.end());
-    for (std::size_t k = 0; k < knots.size(); ++k) {
-      places_.insert(places_.end(), {knots[k] * (1.0 - kBeside), knots[k], knots[k] * (1.0 + kBeside)});
-      for (int i = 1; k + 1 < knots.size() && i < kBetween; ++i) places_.push_back(knots[k] + (knots[k + 1] - knots[k]) * i / kBetween);
-    }
-    for (int i = 1; i < kAll; ++i) places_.push_back(low * std::pow(high / low, i / double(kAll)));
+  FollowedPlaces(std::vector<double> knots, double low, double high) : places_(std::move(knots)) {
+    constexpr int kGrid = 200;
+    for (int i = 0; i <= kGrid; ++i) places_.push_back(std::clamp(low * std::pow(high / low, i / double(kGrid)), low, high));
     std::erase_if(places_, [&](double w) { return !(w >= low && w <= high); });
     std::sort(places_.begin(), places_.end());
     places_.erase(std::unique(places_.begin(), places_.end()), places_.end());
   }
   std::shared_ptr<const EditedCurve> curve(CurveKind kind, const OverWavelength& f, double tolerance) const {
-    Spectrum::Table t{places_, {}, Outside::Hold, axisOf(kind).name};
-    for (double w : places_) t.value.push_back(f(w));
+    std::vector<CurvePoint> found{{places_.front(), f(places_.front())}}, ahead;
+    for (auto place = places_.rbegin(); place + 1 != places_.rend(); ++place) ahead.push_back({*place, f(*place)});
+    constexpr double kNarrowest = 4e-6;
+    constexpr std::size_t kMostFound = 50000;
+    while (!ahead.empty()) {
+      const CurvePoint a = found.back(), b = ahead.back();
+      const double w = 0.5 * (a.wavelength_um + b.wavelength_um);
+      if (b.wavelength_um - a.wavelength_um > kNarrowest * w && found.size() + ahead.size() < kMostFound) {
+        const double middle = f(w);
+        if (std::abs(middle - 0.5 * (a.value + b.value)) > 0.25 * tolerance) {
+          ahead.push_back({w, middle});
+          continue;
+        }
+      }
+      found.push_back(b);
+      ahead.pop_back();
+    }
+    Spectrum::Table t{{}, {}, Outside::Hold, axisOf(kind).name};
+    for (const CurvePoint& p : found) t.wavelength_um.push_back(p.wavelength_um), t.value.push_back(p.value);
     return std::make_shared<const EditedCurve>(EditedCurve::of(Spectrum(std::move(t)), places_.front(), places_.back(), tolerance, axisOf(kind).bounds));
   }
+  std::shared_ptr<const EditedCurve> curve(CurveKind kind, const OverWavelength& f) const { return curve(kind, f, kFollowedWithin); }
   double largest(const OverWavelength& f) const {
     double most = -INFINITY;
     for (double w : places_) most = std::max(most, f(w));
     return most;
   }
-  std::shared_ptr<const EditedCurve> curve(CurveKind kind, const OverWavelength& f) const { return curve(kind, f, kFollowedWithin); }
 
  private:
   std::vector<double> places_;

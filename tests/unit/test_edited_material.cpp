@@ -261,7 +261,7 @@ TEST(EditedMaterial, LibraryMaterialsBecomeCurves) {
   }
   bound("library materials of plain spectra as curves, off by", plain, kCurveTolerance, "asked for");
   EXPECT_NEAR(EditedMaterial::named("glass", editLibraries()).curve(Exponent).at(1.0), 1000.0, 1e-9);
-  for (const char* name : {"steel", "acrylic_canopy"}) {
+  for (const char* name : {"gold", "acrylic_canopy"}) {
     const EditedMaterial m = EditedMaterial::named(name, editLibraries());
     const auto file = readMaterialFile(editLibraries().materials / (std::string(name) + ".yaml"), editLibraries());
     for (double w = file->validLow_um() + 0.01; w < 15.0; w *= 1.03) others = std::max(others, std::abs(m.energyAt(w) - file->reflectance(w, 0.0)));
