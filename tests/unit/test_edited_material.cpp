@@ -104,6 +104,19 @@ TEST(EditedMaterial, TheDraggedCurveYields) {
   EXPECT_LT(m.curve(Specular).points()[1].wavelength_um, 0.74);
   EXPECT_GT(m.curve(Specular).points()[1].wavelength_um, 0.6);
   EXPECT_LE(mostSharedOf(m), 1.0 + 1e-11);
+  // Where a low point goes, those beside it come down, and they alone.
+  m.setCurve(Specular, EditedCurve({{0.4, 0.0}}));
+  m.setCurve(Diffuse, EditedCurve({{0.6, 0.0}, {0.7, 0.8}, {0.8, 0.0}}));
+  for (bool smooth : {false, true}) {
+    m.setCurve(Specular, EditedCurve({{0.4, 0.1}, {0.5, 0.7}, {0.7, 0.1}, {0.9, 0.7}, {1.0, 0.3}}, smooth));
+    m.removePoint(Specular, 2);
+    const auto& points = m.curve(Specular).points();
+    ASSERT_EQ(points.size(), 4u);
+    EXPECT_EQ(points.front().value, 0.1);
+    EXPECT_EQ(points.back().value, 0.3);
+    EXPECT_NEAR(m.curve(Specular).at(0.7), 0.2, 0.01);
+    EXPECT_LE(mostSharedOf(m), 1.0 + 1e-11);
+  }
   // Given emissivity has what is left.
   m.giveEmissivity(true);
   EXPECT_NEAR(m.curve(Emissivity).at(0.5), 1.0 - m.curve(Diffuse).at(0.5) - m.curve(Specular).at(0.5), 2e-4);
