@@ -73,7 +73,8 @@ std::vector<CurvePoint> straightPieces(const Spectrum& s, double low, double hig
 EditedCurve::EditedCurve(std::vector<CurvePoint> points, bool smooth, CurveBounds bounds) : points_(std::move(points)), smooth_(smooth), bounds_(bounds) {
   if (points_.empty()) throw std::invalid_argument("a curve without points");
   if (points_.size() > kMost)
-    throw UserError({}, "a curve of " + std::to_string(points_.size()) + " points", "at most " + std::to_string(kMost), "follow it less closely");
+    throw UserError({"curve", 0, 0, -1}, "a curve of " + std::to_string(points_.size()) + " points", "at most " + std::to_string(kMost),
+                    "follow it less closely");
   for (CurvePoint& p : points_) {
     if (!(p.wavelength_um >= bounds_.low_um && p.wavelength_um <= bounds_.high_um)) throw std::invalid_argument("a point of a curve off its wavelengths");
     p = within(p.wavelength_um, p.value);
@@ -127,7 +128,7 @@ std::size_t EditedCurve::add(double wavelength_um, double value) {
     set(i, value);
     return i;
   }
-  if (points_.size() >= kMost) throw UserError({}, "a curve of more than " + std::to_string(kMost) + " points", "fewer", "remove some");
+  if (points_.size() >= kMost) throw UserError({"curve", 0, 0, -1}, "a curve of more than " + std::to_string(kMost) + " points", "fewer", "remove some");
   const auto after = std::upper_bound(points_.begin(), points_.end(), added.wavelength_um, [](double w, const CurvePoint& p) { return w < p.wavelength_um; });
   const auto at = points_.insert(after, added);
   const auto i = static_cast<std::size_t>(at - points_.begin());

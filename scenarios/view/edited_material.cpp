@@ -123,7 +123,7 @@ void EditedMaterial::setFilm(const std::optional<EditedFilm>& film) {
   EditedSurface next = now_;
   next.film = film;
   if (film && !film->pigmentApparent && film->substrate.find_first_not_of("0123456789.") != std::string::npos)
-    throw UserError({}, "what scatters beneath is counted by the scattering, in '" + film->substrate.substr(0, 60) + "', which may absorb",
+    throw UserError({"film", 0, 0, -1}, "what scatters beneath is counted by the scattering, in '" + film->substrate.substr(0, 60) + "', which may absorb",
                     "a substrate that is a number, or an apparent reflectance", "count what comes out");
   auto made = madeMaterial(next, libraries_);
   become(std::move(next));

@@ -22,11 +22,16 @@ std::string filmThicknessText(const EditedFilm& film) { return exactNumber(tidy(
 void refuseSubstrateWord(const std::string& word) {
   const auto plain = [](unsigned char c) { return std::isalnum(c) || c == '_' || c == '-' || c == '.' || c == '+'; };
   if (word.empty() || !std::all_of(word.begin(), word.end(), plain))
-    throw UserError({}, "a substrate called '" + word.substr(0, 60) + "'", "the name of a substance, or a number", "choose one of materials/substances");
+    throw UserError({"film", 0, 0, -1}, "a substrate called '" + word.substr(0, 60) + "'", "the name of a substance, or a number",
+                    "choose one of materials/substances");
 }
+
+/// Where a mistake in a film is.
+const Location kInFilm{"film", 0, 0, -1};
 
 Value scalarOf(std::string text) {
   Value v;
+  v.where = kInFilm;
   v.kind = Value::Kind::Scalar;
   v.text = std::move(text);
   return v;
@@ -35,7 +40,8 @@ Value scalarOf(std::string text) {
 Value treeOf(std::vector<std::pair<std::string, Value>> entries) {
   Value v;
   v.kind = Value::Kind::Map;
-  v.keyPlaces.resize(entries.size());
+  v.where = kInFilm;
+  v.keyPlaces.assign(entries.size(), kInFilm);
   v.entries = std::move(entries);
   return v;
 }

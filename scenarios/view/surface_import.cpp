@@ -269,7 +269,7 @@ EditedSurface surfaceNamed(const std::string& word, const Libraries& libraries) 
       for (const auto& entry : std::filesystem::directory_iterator(libraries.materials, ignored))
         if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
       std::sort(names.begin(), names.end());
-      throw unknownWord({}, "there is no material and no file", word, names, "check the name");
+      throw unknownWord({word, 0, 0, -1}, "there is no material and no file", word, names, "check the name");
     }
   } else if (const auto imported = importedMaterial(file)) {
     SaidMaterial said{parseYaml(imported->yaml, file.string() + " as YAML"), file.parent_path(), nullptr};

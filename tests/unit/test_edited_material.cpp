@@ -246,7 +246,10 @@ TEST(EditedMaterial, AFilmThatCannotBeChangesNothing) {
   EXPECT_THROW(m.setFilm(EditedFilm{.thickness_um = -1.0}), UserError);
   EXPECT_TRUE(m.surface() == before);
   EXPECT_FALSE(m.canUndo());
+  m.setCurve(CurveKind::Diffuse, EditedCurve({{0.3, 1.0}}));
   m.setFilm(EditedFilm{});
+  // What scatters beneath has what the facets leave: white is allowed.
+  for (double w : {0.4, 1.0, 4.0}) EXPECT_LE(m.energyAt(w), 1.0 + 1e-6);
   EXPECT_TRUE(std::isnan(m.energyAt(200.0)));  // titanium is known to 25 um
   EXPECT_EQ(m.energyAt(2.0), m.energyAt(2.0));
 }
