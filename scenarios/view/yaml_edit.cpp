@@ -32,7 +32,9 @@ bool hasControls(const std::string& text) {
 
 /// Whether a text is read as itself without quotes, within brackets or not.
 bool isPlain(const std::string& t) {
-  if (t.empty() || t == "~" || t == "null" || t == "-" || t.front() == ' ' || t.back() == ' ' || t.back() == ':' || hasControls(t)) return false;
+  if (t.empty() || t == "~" || t == "null" || t == "Null" || t == "NULL" || t == "-" || t.front() == ' ' || t.back() == ' ' || t.back() == ':' ||
+      hasControls(t))
+    return false;
   if (std::string_view("?:,[]{}#&*!|>'\"%@`").find(t.front()) != std::string_view::npos || t.starts_with("- ") || t.starts_with("---") || t.starts_with("..."))
     return false;
   return t.find_first_of(",[]{}") == std::string::npos && t.find(": ") == std::string::npos && t.find(" #") == std::string::npos;
@@ -151,7 +153,7 @@ class Edit {
   }
 
   void collectAliases(const Value& v) {
-    if (YamlPlaces::isEmpty(v)) return;
+    if (places_.isEmpty(v)) return;
     if (const std::string_view alias = places_.alias(v.where); !alias.empty()) {
       aliases_.insert(alias);
       return;
@@ -161,10 +163,10 @@ class Edit {
     for (const Location& key : v.keyPlaces)
       if (const std::string_view alias = places_.alias(key); !alias.empty()) aliases_.insert(alias);
   }
-  bool isAlias(const Value& v) const { return !YamlPlaces::isEmpty(v) && !places_.alias(v.where).empty(); }
+  bool isAlias(const Value& v) const { return !places_.isEmpty(v) && !places_.alias(v.where).empty(); }
 
   void refuseShared(const Value& v) const {
-    if (YamlPlaces::isEmpty(v)) return;
+    if (places_.isEmpty(v)) return;
     if (isAlias(v)) refuse(v.where, "here is *" + std::string(places_.alias(v.where)) + ", which stands for what is written elsewhere");
     if (const std::string_view name = places_.anchor(v); aliases_.count(name) > 0)
       refuse(v.where, "&" + std::string(name) + " is used elsewhere, as *" + std::string(name) + ", which would change too");
@@ -196,7 +198,7 @@ class Edit {
       } else if (at->kind == Value::Kind::List) {
         next = item(*at, words_[k], ownEntry);
         ownEntry = true;
-        if (YamlPlaces::isEmpty(*next)) {
+        if (places_.isEmpty(*next)) {
           if (inner.inFlow) refuse(at->where, "nothing is written at its place");
           head = {places_.afterDash(*at, static_cast<std::size_t>(next - at->items.data())), true};
         }
@@ -209,10 +211,10 @@ class Edit {
       at = next;
       context = inner;
       if (k + 1 < words_.size()) {
-        if (YamlPlaces::isEmpty(*at)) refuse(keyed ? at->where : tree_.where, "nothing is written above it");
+        if (places_.isEmpty(*at)) refuse(keyed ? at->where : tree_.where, "nothing is written above it");
         continue;
       }
-      if (YamlPlaces::isEmpty(*at)) {
+      if (places_.isEmpty(*at)) {
         pieces_.push_back({head.end, head.end, (head.colon ? " " : ": ") + flowText(value_)});
         return;
       }
@@ -234,7 +236,8 @@ class Edit {
     const Value* found = nullptr;
     const auto others = std::find_if(list.items.begin(), list.items.end(), standsForOthers);
     if (error == std::errc() && end == word.data() + word.size()) {
-      if (!ownEntry && others_) refuse(*others_, "the numbers count entries of other files too");
+      const Value* include = tree_.find("include");
+      if (!ownEntry && include) refuse(include->where, "the numbers count entries of other files too");
       if (index < list.items.size()) found = &list.items[index];
       if (others != list.items.end() && (!found || others - list.items.begin() <= static_cast<std::ptrdiff_t>(index)))
         refuse(others->where, "the numbers count included and repeated entries too");
@@ -279,12 +282,13 @@ class Edit {
     if (wordsOf(old) != wordsOf(now)) replace(old, now, context, head);
   }
 
-  static bool sameShape(const Value& a, const Value& b) {
+  /// Whether the values of `a` can change one by one into those of `b`.
+  bool sameShape(const Value& a, const Value& b) const {
     if (a.kind != b.kind || (a.kind != Value::Kind::List && a.kind != Value::Kind::Map)) return false;
     if (a.items.size() != b.items.size() || a.entries.size() != b.entries.size() || a.items.size() + a.entries.size() == 0) return false;
     for (std::size_t k = 0; k < a.entries.size(); ++k)
-      if (a.entries[k].first != b.entries[k].first || YamlPlaces::isEmpty(a.entries[k].second)) return false;
-    return std::none_of(a.items.begin(), a.items.end(), YamlPlaces::isEmpty);
+      if (a.entries[k].first != b.entries[k].first || places_.isEmpty(a.entries[k].second)) return false;
+    return std::none_of(a.items.begin(), a.items.end(), [&](const Value& item) { return places_.isEmpty(item); });
   }
 
   void add(const Value& map, const YamlContext& context, std::size_t word, bool ownEntry) {
@@ -312,7 +316,7 @@ class Edit {
   }
   std::size_t lastEnd(const Value& map, const YamlContext& inner) const {
     const Value& last = map.entries.back().second;
-    return YamlPlaces::isEmpty(last) ? places_.key(map.keyPlaces.back(), inner.inFlow).end : places_.end(last, inner);
+    return places_.isEmpty(last) ? places_.key(map.keyPlaces.back(), inner.inFlow).end : places_.end(last, inner);
   }
 
   void check(const std::string& changed) const {

@@ -167,6 +167,14 @@ std::size_t YamlPlaces::afterDash(const Value& list, std::size_t item) const {
   return dash + 1;
 }
 
+bool YamlPlaces::isEmpty(const Value& value) const {
+  if (value.kind != Value::Kind::Null) return false;
+  const std::size_t from = start(value);
+  if (charAt(from) == '*') return false;
+  const std::string_view word = text_.substr(from, wordEnd(from) - from);
+  return word != "~" && word != "null" && word != "Null" && word != "NULL";
+}
+
 std::string_view YamlPlaces::anchor(const Value& value) const {
   for (std::size_t from = at(value.where); charAt(from) == '&' || charAt(from) == '!'; from = afterBlanks(wordEnd(from)))
     if (text_[from] == '&') return text_.substr(from + 1, wordEnd(from) - from - 1);

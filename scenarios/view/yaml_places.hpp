@@ -41,8 +41,8 @@ class YamlPlaces {
   /// Names of what it carries, "" for none.
   std::string_view anchor(const Value& value) const;
   std::string_view alias(const Location& place) const;
-  /// Nothing is written where it stands: its place is then that of something else.
-  static bool isEmpty(const Value& value) { return value.kind == Value::Kind::Null && value.text.empty(); }
+  /// Nothing is written where it stands, not even '~': its place is then that of something else.
+  bool isEmpty(const Value& value) const;
 
  private:
   char charAt(std::size_t i) const { return i < text_.size() ? text_[i] : '\n'; }
