@@ -186,6 +186,7 @@ class Edit {
     YamlContext context;
     bool ownEntry = false;  // below an entry of a list nothing is put together with other files
     for (std::size_t k = 0; k < words_.size(); ++k) {
+      reached_ = &at->where;
       refuseShared(*at);
       const Value* next = nullptr;
       const YamlContext inner = places_.within(*at, context);
@@ -328,7 +329,7 @@ class Edit {
     } catch (const UserError&) {
       // Not a scenario any more: refused below.
     }
-    if (!same) refuse({file_, 1, 1, -1}, "it is written in a way that cannot be kept");
+    if (!same) refuse(*reached_, "it is written in a way that cannot be kept");
   }
 
   const std::string& text_;
@@ -339,7 +340,8 @@ class Edit {
   const Value value_;
   std::vector<std::string> words_;
   std::set<std::string_view> aliases_;
-  const Location* others_ = nullptr;  ///< where other files are named that the scenario is put together from
+  const Location* others_ = nullptr;   ///< where other files are named that the scenario is put together from
+  const Location* reached_ = nullptr;  ///< the last map or list on the path
   std::vector<Piece> pieces_;
 };
 

@@ -81,15 +81,19 @@ std::size_t YamlPlaces::plainEnd(std::size_t from, const YamlContext& context) c
   }
 }
 
-/// Of a text behind '|' or '>'.
+/// Of a text behind '|' or '>'. Its first line says how deep the others are at least, unless a digit does.
 std::size_t YamlPlaces::literalEnd(std::size_t from, std::size_t indent) const {
   std::size_t end = wordEnd(from);
+  bool known = text_.substr(from, end - from).find_first_of("123456789") != std::string_view::npos;
+  std::size_t least = indent + 1;
   for (std::size_t line = text_.find('\n', from); line != std::string_view::npos; line = text_.find('\n', line + 1)) {
     std::size_t i = line + 1;
     while (i < text_.size() && text_[i] == ' ') ++i;
     if (i >= text_.size()) break;
     if (text_[i] == '\n' || text_[i] == '\r') continue;
-    if (i - line - 1 <= indent) break;
+    const std::size_t deep = i - line - 1;
+    if (deep < least) break;
+    if (!known) least = deep, known = true;
     end = std::min(text_.size(), text_.find('\n', i));
     if (text_[end - 1] == '\r') --end;
   }

@@ -60,8 +60,7 @@ void collectLeaves(const Value& v, const std::string& path, bool numbersAlone, b
     if (key.find('.') == std::string::npos) collectLeaves(item, front + key, numbersAlone, named, leaves);
 }
 
-std::string overridden(const std::string& text, const YamlChange& change) {
-  Value tree = parseYaml(text, "own.yaml");
+std::string overridden(Value tree, const YamlChange& change) {
   applyOverride(tree, change.path + "=" + change.value);
   return wordsOf(tree);
 }
@@ -78,6 +77,8 @@ TEST(YamlEdit, ValuesOfAllStyles) {
   EXPECT_EQ(edited("a:   # head\n  - 1 m\n  - 2 m   # last\n\ne: 3\n", "a", "[3 m]"), "a: [3 m]   # head   # last\n\ne: 3\n");
   EXPECT_EQ(edited("a:\n- 1 m\n- 2 m\ne: 3\n", "a", "[3 m, 4 m]"), "a: [3 m, 4 m]\ne: 3\n");
   EXPECT_EQ(edited("a: |\n  one\n  two\n\nb: 1\n", "a", "three"), "a: three\n\nb: 1\n");
+  EXPECT_EQ(edited("a: |\n    one\n  # c\nb: 1\n", "a", "three"), "a: three\n  # c\nb: 1\n");
+  EXPECT_EQ(edited("l:\n  - >-\n    one\n    two\n  - 2\n", "l.0", "three"), "l:\n  - three\n  - 2\n");
   EXPECT_EQ(edited("a: one\n   two\n# c\nb: 1\n", "a", "three"), "a: three\n# c\nb: 1\n");
   EXPECT_EQ(edited("a:    # none yet\nb: 1\n", "a", "3 m"), "a: 3 m    # none yet\nb: 1\n");
   EXPECT_EQ(edited("a: ~ # none\n", "a", "3 m"), "a: 3 m # none\n");
@@ -233,14 +234,33 @@ TEST(YamlEdit, NumbersOfShippedScenarios) {
       std::string wanted = text;
       ASSERT_EQ(text.compare(at, leaf.value->text.size(), leaf.value->text), 0) << file << " " << leaf.path;
       EXPECT_EQ(changed, wanted.replace(at, leaf.value->text.size(), change.value)) << file << " " << leaf.path;
-      EXPECT_EQ(wordsOf(parseYaml(changed, "own.yaml")), overridden(text, change)) << file << " " << leaf.path;
+      EXPECT_EQ(wordsOf(parseYaml(changed, "own.yaml")), overridden(tree, change)) << file << " " << leaf.path;
       ++here, ++done;
     }
   }
+  RecordProperty("numbers", done);
   EXPECT_GT(done, 400);  // 22 files, few of them with less than 30 numbers of their own
 }
 
-/// Any value for any other, with both line ends: what is not refused is what --set gives.
+std::string withCommentsOnEachLine(const std::string& text) {
+  std::string out;
+  int line = 1;
+  for (std::size_t from = 0; from < text.size(); ++line) {
+    const std::size_t end = std::min(text.size(), text.find('\n', from));
+    out += text.substr(from, end - from) + " # c" + std::to_string(line) + ";\n";
+    from = end + 1;
+  }
+  return out;
+}
+
+int lastLineOf(const Value& v) {
+  int line = v.where.line;
+  for (const Value& item : v.items) line = std::max(line, lastLineOf(item));
+  for (const auto& [key, item] : v.entries) line = std::max(line, lastLineOf(item));
+  return line;
+}
+
+/// Any value for any other, with both line ends: what is not refused is what --set gives, and comments outside of the value stay.
 TEST(YamlEdit, RandomChangesOfShippedScenariosCorruptNothing) {
   std::mt19937 random(12);
   const std::vector<std::string> values = {"1.25 m", "[1 m, -2 m, 3 m]", "{a: 1, b: [x, 'y, z']}", "'a: b # c'", "null", "[]",
@@ -249,9 +269,20 @@ TEST(YamlEdit, RandomChangesOfShippedScenariosCorruptNothing) {
   struct Shipped {
     std::string text;
     Value tree;
+    bool commented;
   };
+  int commentedFiles = 0;
   std::vector<Shipped> shipped;
-  for (const fs::path& file : shippedScenarios()) shipped.push_back({readWholeFile(file), parseYaml(readWholeFile(file), "own.yaml")});
+  for (const fs::path& file : shippedScenarios()) {
+    const std::string text = readWholeFile(file), commented = withCommentsOnEachLine(text);
+    const std::string words = wordsOf(parseYaml(text, "own.yaml"));
+    Value tree = parseYaml(commented, "own.yaml");
+    const bool same = wordsOf(tree) == words;  // no text in quotes goes on over lines
+    commentedFiles += same;
+    if (!same) tree = parseYaml(text, "own.yaml");
+    shipped.push_back({same ? commented : text, std::move(tree), same});
+  }
+  EXPECT_GT(commentedFiles, 15);
   const auto any = [&](std::size_t count) { return std::uniform_int_distribution<std::size_t>(0, count - 1)(random); };
   int written = 0;
   for (int k = 0; k < 3000 && written < 300; ++k) {
@@ -262,7 +293,8 @@ TEST(YamlEdit, RandomChangesOfShippedScenariosCorruptNothing) {
     const bool carriageReturns = k % 3 == 0;
     if (carriageReturns)
       for (std::size_t i = text.find('\n'); i != std::string::npos; i = text.find('\n', i + 2)) text.insert(i, "\r");
-    const YamlChange change{leaves[any(leaves.size())].path + keys[any(keys.size())], values[any(values.size())]};
+    const Leaf& leaf = leaves[any(leaves.size())];
+    const YamlChange change{leaf.path + keys[any(keys.size())], values[any(values.size())]};
     std::string changed;
     try {
       changed = withChanges(text, "own.yaml", {change});
@@ -271,7 +303,12 @@ TEST(YamlEdit, RandomChangesOfShippedScenariosCorruptNothing) {
       continue;
     }
     ++written;
-    EXPECT_EQ(wordsOf(parseYaml(changed, "own.yaml")), overridden(text, change)) << change.path << "=" << change.value;
+    EXPECT_EQ(wordsOf(parseYaml(changed, "own.yaml")), overridden(from.tree, change)) << change.path << "=" << change.value;
+    const int lines = static_cast<int>(std::count(text.begin(), text.end(), '\n'));
+    for (int line = 1; from.commented && line <= lines; ++line)
+      if (line < leaf.value->where.line || line >= lastLineOf(*leaf.value)) {
+        EXPECT_NE(changed.find(" # c" + std::to_string(line) + ";"), std::string::npos) << change.path << "=" << change.value << " line " << line;
+      }
     const auto lone = [](const std::string& t) {
       int count = 0;
       for (std::size_t i = 0; i < t.size(); ++i) count += t[i] == '\n' && (i == 0 || t[i - 1] != '\r');
