@@ -13,15 +13,13 @@ bool isFlowMark(char c) { return kFlowMarks.find(c) != std::string_view::npos; }
 
 }  // namespace
 
+YamlPlaces::YamlPlaces(std::string_view text) : text_(text), lines_{text.starts_with(kByteOrderMark) ? kByteOrderMark.size() : 0} {
+  for (std::size_t end = text.find('\n'); end != std::string_view::npos; end = text.find('\n', end + 1)) lines_.push_back(end + 1);
+}
+
 std::size_t YamlPlaces::at(const Location& place) const {
-  std::size_t from = 0;
-  for (int line = 1; line < place.line; ++line) {
-    from = text_.find('\n', from);
-    if (from == std::string_view::npos) return text_.size();
-    ++from;
-  }
-  if (place.line == 1 && text_.starts_with(kByteOrderMark)) from += kByteOrderMark.size();
-  return std::min(text_.size(), from + static_cast<std::size_t>(std::max(0, place.column - 1)));
+  const auto line = static_cast<std::size_t>(std::max(1, place.line)) - 1;
+  return line < lines_.size() ? std::min(text_.size(), lines_[line] + static_cast<std::size_t>(std::max(1, place.column)) - 1) : text_.size();
 }
 
 std::size_t YamlPlaces::column(std::size_t offset) const {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "sim/parameters/value.hpp"
 
@@ -18,7 +19,7 @@ struct YamlContext {
 /// of it (an anchor, a tag) begins at its place too.
 class YamlPlaces {
  public:
-  explicit YamlPlaces(std::string_view text) : text_(text) {}
+  explicit YamlPlaces(std::string_view text);
 
   /// Behind an `&anchor` and a `!tag`, and the blanks and comments behind these.
   std::size_t start(const Value& value) const { return afterProperties(at(value.where)); }
@@ -57,6 +58,7 @@ class YamlPlaces {
   std::size_t flowEnd(std::size_t from) const;
 
   std::string_view text_;
+  std::vector<std::size_t> lines_;  ///< where each begins
 };
 
 }  // namespace pitviper
