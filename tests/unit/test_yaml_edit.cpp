@@ -242,6 +242,49 @@ TEST(YamlEdit, NumbersOfShippedScenarios) {
   EXPECT_GT(done, 400);  // 22 files, few of them with less than 30 numbers of their own
 }
 
+/// All styles within each other.
+const char* const kMixedStyles = R"(# head
+name: mixed   # one
+"quoted key": {"x":1, 'y': [ 1 , 2,
+     # within
+     "a, b # c" ], z: , w }
+same:
+- 1 m   # first
+-
+- - a
+  - [b, c]
+  -
+    k: 1
+    l:
+- name: item
+  text: |-
+      literal # no comment
+      : - [
+
+    # a comment
+  folded: >2
+      deep
+    less
+  plain: it's {a} [b]
+    going on
+  last:     # empty
+mine: &mine
+  # between
+  a: 1
+  b: {c: {d: {}}}
+tagged: !!str 5   # five
+nulls: [~, null, "null", '']
+long: "over
+  lines # here"
+deep:
+    list:
+    -   a: 1
+        b: 2
+
+    -   {a: 1, b: [ ] }
+    # below
+end: 1)";
+
 std::string withCommentsOnEachLine(const std::string& text) {
   std::string out;
   int line = 1;
@@ -283,6 +326,7 @@ TEST(YamlEdit, RandomChangesOfShippedScenariosCorruptNothing) {
     shipped.push_back({same ? commented : text, std::move(tree), same});
   }
   EXPECT_GT(commentedFiles, 15);
+  for (int k = 0; k < 6; ++k) shipped.push_back({kMixedStyles, parseYaml(kMixedStyles, "own.yaml"), false});
   const auto any = [&](std::size_t count) { return std::uniform_int_distribution<std::size_t>(0, count - 1)(random); };
   int written = 0;
   for (int k = 0; k < 3000 && written < 300; ++k) {
