@@ -109,9 +109,9 @@ bool holdsExpression(const Value& v) {
 bool standsForOthers(const Value& entry) { return entry.kind == Value::Kind::Map && (entry.find("include") || entry.find("repeat")); }
 
 /// One change of one text.
-class Edit {
+class YamlEdit {
  public:
-  Edit(const std::string& text, const std::string& fileName, const YamlChange& change)
+  YamlEdit(const std::string& text, const std::string& fileName, const YamlChange& change)
       : text_(text),
         file_(fileName),
         change_(change),
@@ -150,6 +150,13 @@ class Edit {
     if (words_[0] != "parameters" && holdsExpression(value_)) refuse(top, "its value would be worked out here, and is taken as it is by --set");
     for (const char* key : {"extends", "include"})
       if (const Value* other = tree_.find(key)) others_ = &other->where;
+    if (const Value* include = tree_.find("include")) included_ = &include->where;
+  }
+  /// Maps are put together with those of files that are included at the top, and lists at the top joined; --set replaces them.
+  void refuseJoined(const Value* old, bool ownEntry) const {
+    if (!included_ || ownEntry || words_[0] == "parameters") return;
+    const bool lists = value_.kind == Value::Kind::List || (old && old->kind == Value::Kind::List);
+    if (value_.kind == Value::Kind::Map || (lists && words_.size() == 1)) refuse(*included_, "it would be joined with what other files have there");
   }
 
   void collectAliases(const Value& v) {
@@ -212,9 +219,11 @@ class Edit {
       at = next;
       context = inner;
       if (k + 1 < words_.size()) {
-        if (places_.isEmpty(*at)) refuse(keyed ? at->where : tree_.where, "nothing is written above it");
+        if (places_.isEmpty(*at)) refuse(*reached_, "'" + words_[k] + "' holds nothing to go into");
         continue;
       }
+      if (wordsOf(*at) == wordsOf(value_)) return;
+      refuseJoined(at, ownEntry);
       if (places_.isEmpty(*at)) {
         pieces_.push_back({head.end, head.end, (head.colon ? " " : ": ") + flowText(value_)});
         return;
@@ -237,8 +246,7 @@ class Edit {
     const Value* found = nullptr;
     const auto others = std::find_if(list.items.begin(), list.items.end(), standsForOthers);
     if (error == std::errc() && end == word.data() + word.size()) {
-      const Value* include = tree_.find("include");
-      if (!ownEntry && include) refuse(include->where, "the numbers count entries of other files too");
+      if (!ownEntry && included_) refuse(*included_, "the numbers count entries of other files too");
       if (index < list.items.size()) found = &list.items[index];
       if (others != list.items.end() && (!found || others - list.items.begin() <= static_cast<std::ptrdiff_t>(index)))
         refuse(others->where, "the numbers count included and repeated entries too");
@@ -295,7 +303,9 @@ class Edit {
   void add(const Value& map, const YamlContext& context, std::size_t word, bool ownEntry) {
     const bool parameter = words_[0] == "parameters";
     if (parameter && (word > 1 || words_.size() != 2 || !others_)) refuse(map.where, "there is no parameter '" + words_.back() + "'");
-    if (!ownEntry && others_ && !parameter && word + 1 < words_.size()) refuse(*others_, "'" + words_[word] + "' comes from another file");
+    refuseJoined(nullptr, ownEntry);
+    if (!ownEntry && others_ && !parameter && word + 1 < words_.size() && (word == 0 || included_))
+      refuse(*others_, "'" + words_[word] + "' comes from another file");
     std::string text = flowText(value_);
     for (std::size_t k = words_.size(); k-- > word;) {
       text = scalarText(words_[k]) + ": " + text;
@@ -340,8 +350,9 @@ class Edit {
   const Value value_;
   std::vector<std::string> words_;
   std::set<std::string_view> aliases_;
-  const Location* others_ = nullptr;   ///< where other files are named that the scenario is put together from
-  const Location* reached_ = nullptr;  ///< the last map or list on the path
+  const Location* others_ = nullptr;    ///< where other files are named that the scenario is put together from
+  const Location* included_ = nullptr;  ///< the same of `include` alone
+  const Location* reached_ = nullptr;   ///< the last map or list on the path
   std::vector<Piece> pieces_;
 };
 
@@ -350,7 +361,7 @@ class Edit {
 std::string withChanges(const std::string& text, const std::string& fileName, const std::vector<YamlChange>& changes) {
   std::string changed = text;
   for (const YamlChange& change : changes) {
-    std::string next = Edit(changed, fileName, change).result();
+    std::string next = YamlEdit(changed, fileName, change).result();
     changed = std::move(next);
   }
   return changed;

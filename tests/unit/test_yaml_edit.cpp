@@ -179,6 +179,8 @@ TEST(YamlEdit, RefusesWhatIsNotTheFilesOwn) {
   expect("extends: base.yaml\nname: x\n", "sun.elevation", "1:10", "comes from another file");
   expect("extends: base.yaml\nname: x\n", "cameras.seeker.position", "1:10", "comes from another file");
   expect("include: [base.yaml]\ne: [{a: 1}]\n", "e.0.a", "1:10", "entries of other files");
+  expect("include: [base.yaml]\ne: [{a: 1}]\n", "e", "1:10", "joined");
+  expect("include: [base.yaml]\nsun: {a: 1}\n", "sun.b.c", "1:10", "comes from another file");
   expect("e:\n  - include: jet.yaml\n  - {name: a, x: 1}\n", "e.jet.x", "2:5", "included or repeated");
   expect("e:\n  - include: jet.yaml\n  - {name: a, x: 1}\n", "e.1.x", "2:5", "the numbers count");
   expect("e:\n  - {name: a, x: 1, repeat: {count: 3}}\n", "e.a_1.x", "2:5", "included or repeated");
@@ -193,8 +195,21 @@ TEST(YamlEdit, RefusesWhatIsNotTheFilesOwn) {
   expect("a: &x 1\nc: *x\n", "c", "2:4", "here is *x");
   expect("a: [1, 2]\n", "a.2", "1:4", "is not in this list");
   expect("a: {b: 1}\n", "parameters.x", "1:1", "no parameter");
+  expect("a:\nb: 1\n", "a.c", "1:1", "'a' holds nothing");
   expect("a: {b: 1}\n", "a..b", "1:1", "no path");
   EXPECT_NE(editRefusal("a: 1\n", "a", "$x").find("worked out"), std::string::npos);
+}
+
+TEST(YamlEdit, WhatStandsInAFileThatHasOthersBelowItChanges) {
+  EXPECT_EQ(edited("extends: b.yaml\nsun: {a: 1}\n", "sun.b.c", "2"), "extends: b.yaml\nsun: {a: 1, b: {c: 2}}\n");
+  EXPECT_EQ(edited("extends: b.yaml\nname: x\n", "accuracy", "2 %"), "extends: b.yaml\nname: x\naccuracy: 2 %\n");
+  EXPECT_EQ(edited("include: b.yaml\ne: [{name: x, a: 1}]\n", "e.x.a", "[2, 3]"), "include: b.yaml\ne: [{name: x, a: [2, 3]}]\n");
+  EXPECT_EQ(edited("e:\n  - {name: a, x: 1}\n  - include: jet.yaml\n", "e.0.x", "2"), "e:\n  - {name: a, x: 2}\n  - include: jet.yaml\n");
+}
+
+TEST(YamlEdit, AValueThatIsTheSameStaysAsItIsWritten) {
+  const std::string text = "a:\n  - '1'\n  - 2\n";
+  EXPECT_EQ(edited(text, "a", "[1, 2]"), text);
 }
 
 TEST(YamlEdit, ParametersChangeWhereTheyAreDeclared) {
