@@ -222,8 +222,8 @@ class YamlEdit {
         if (places_.isEmpty(*at)) refuse(*reached_, "'" + words_[k] + "' holds nothing to go into");
         continue;
       }
-      if (wordsOf(*at) == wordsOf(value_)) return;
       refuseJoined(at, ownEntry);
+      if (wordsOf(*at) == wordsOf(value_)) return;
       if (places_.isEmpty(*at)) {
         pieces_.push_back({head.end, head.end, (head.colon ? " " : ": ") + flowText(value_)});
         return;
