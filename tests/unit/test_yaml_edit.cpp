@@ -193,6 +193,8 @@ TEST(YamlEdit, RefusesWhatIsNotTheFilesOwn) {
   expect("a: {b: &x 1}\nc: *x\n", "a", "1:8", "is used elsewhere, as *x");
   expect("a: &x {b: 1}\nc: *x\n", "c.b", "2:4", "here is *x");
   expect("a: &x 1\nc: *x\n", "c", "2:4", "here is *x");
+  expect("a: &x ~\nc: *x\n", "c", "2:4", "here is *x");
+  expect("a: &x ~\nc: *x\n", "a", "1:4", "is used elsewhere");
   expect("a: [1, 2]\n", "a.2", "1:4", "is not in this list");
   expect("a: {b: 1}\n", "parameters.x", "1:1", "no parameter");
   expect("a:\nb: 1\n", "a.c", "1:1", "'a' holds nothing");
