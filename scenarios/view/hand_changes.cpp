@@ -49,8 +49,8 @@ StateAt worldWith(const Simulation& sim, const HandChanges& hands, double time_s
   };
 }
 
-std::vector<KeyChange> keysOf(const Simulation& sim, const HandChanges& hands, double time_s) {
-  std::vector<KeyChange> keys;
+std::vector<YamlChange> keysOf(const Simulation& sim, const HandChanges& hands, double time_s) {
+  std::vector<YamlChange> keys;
   const WorldState state = advance(sim, time_s);
   for (const Camera& c : sim.cameras) {
     const std::string path = "cameras." + c.name + ".";

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/view/yaml_edit.hpp"
 #include "sim/world/world.hpp"
 
 namespace pitviper {
@@ -21,11 +22,7 @@ struct HandChanges {
 /// A scenario's world with hands in it, from a frame on. The simulation must outlive it.
 StateAt worldWith(const Simulation& simulation, const HandChanges& hands, double time_s);
 
-/// A change as a scenario's key: "cameras.seeker.position" and its value as YAML.
-struct KeyChange {
-  std::string path, value;
-};
 /// All of them as keys; a camera that something carries is told in its carrier's axes at that time.
-std::vector<KeyChange> keysOf(const Simulation& simulation, const HandChanges& hands, double time_s);
+std::vector<YamlChange> keysOf(const Simulation& simulation, const HandChanges& hands, double time_s);
 
 }  // namespace pitviper

@@ -86,15 +86,12 @@ class ScenePanel final : public Panel {
   }
 
   void changes(ViewState& state) {
-    const std::vector<KeyChange> keys = keysOf(state.scene->simulation, state.hands, state.time_s);
+    const std::vector<YamlChange> keys = keysOf(state.scene->simulation, state.hands, state.time_s);
     if (keys.empty()) return;
     ImGui::Separator();
     ImGui::TextDisabled("changed by hand");
-    std::string all;
-    for (const KeyChange& k : keys) {
-      ImGui::TextWrapped("%s: %s", k.path.c_str(), k.value.c_str());
-      all += "--set " + k.path + "='" + k.value + "' ";
-    }
+    for (const YamlChange& k : keys) ImGui::TextWrapped("%s: %s", k.path.c_str(), k.value.c_str());
+    const std::string all = asSetOptions(keys);
     state.marks.text("changes", all);
     if (button(state.marks, "copy_set", "copy as --set")) {
       ImGui::SetClipboardText(all.c_str());
@@ -103,10 +100,24 @@ class ScenePanel final : public Panel {
     ImGui::SameLine();
     if (button(state.marks, "write_back", "write into the scenario", "ctrl + S; comments stay")) write(state);
     ImGui::SameLine();
-    if (button(state.marks, "forget", "forget")) state.hands = {};
+    if (button(state.marks, "forget", "forget")) state.hands = {}, problem_.clear();
+    if (!problem_.empty()) ImGui::TextWrapped("%s", problem_.c_str());
+    state.marks.text("write_problem", problem_);
   }
 
-  void write(ViewState& state) { state.say(""); }
+  /// The file that is watched changes, and is read again: what was changed by hand is the scenario's own then.
+  void write(ViewState& state) {
+    try {
+      writeChanges(state.wish.scenario.file, keysOf(state.scene->simulation, state.hands, state.time_s));
+      state.say("written into " + state.wish.scenario.file);
+      state.hands = {};
+    } catch (const std::exception& e) {
+      problem_ = e.what();
+      state.say("not written");
+    }
+  }
+
+  std::string problem_;  ///< why the last was not written
 };
 
 }  // namespace
