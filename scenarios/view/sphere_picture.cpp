@@ -127,6 +127,15 @@ SpherePicture::SpherePicture(std::vector<SphereChannel> channels, SphereLight li
   if (!(view_.radius_px > 0.0)) throw UserError({}, print("a sphere of a radius of %g pixels", view_.radius_px), "more than 0", "correct it");
   if (!(view_.temperature_K >= 0.0)) throw UserError({}, print("a sphere at %g K", view_.temperature_K), "0 K or more", "correct it");
   if (!(view_.accuracy > 0.0)) throw UserError({}, print("an accuracy of %g", view_.accuracy), "more than 0", "take 1e-3");
+  for (const SphereChannel& c : channels_)
+    for (const Spectrum* own : {&light_.irradiance, light_.ambient ? &*light_.ambient : nullptr})
+      if (own && !own->isZero()) {
+        const Spectrum seen = c.kernel * *own;
+        const double low = seen.supportLow(), high = seen.supportHigh();
+        if (low < high && (low < seen.validLow() || high > seen.validHigh()))
+          throw UserError({}, print("light of a sphere that is known from %g to %g um, for channel '%s'", seen.validLow(), seen.validHigh(), c.name.c_str()),
+                          print("light known from %g to %g um", low, high), "extend its spectrum, or write 'outside: hold' in it");
+      }
   light_.direction = glm::normalize(light_.direction);
   place();
 }
@@ -134,6 +143,7 @@ SpherePicture::SpherePicture(std::vector<SphereChannel> channels, SphereLight li
 void SpherePicture::place() {
   const glm::dvec3 light = light_.direction, viewer(0.0, 0.0, 1.0);
   difference_rad_ = 0.5 * angleBetween(Angle::Incidence, light, viewer);
+  const double perHalf = 1.0 / glm::length(light + viewer);
   const auto normalAt = [&](std::size_t pixel) {
     const auto side = static_cast<std::size_t>(view_.side);
     const glm::dvec2 p =
@@ -151,15 +161,17 @@ void SpherePicture::place() {
   onStretches(pixels_.size(), kLeastPixels, [&](std::size_t from, std::size_t to) {
     for (std::size_t k = from; k < to; ++k) {
       const glm::dvec3 n = normalAt(pixels_[k]);
-      const double sine = std::hypot(n.x, n.y);
+      const double sine = std::sqrt(n.x * n.x + n.y * n.y);
       angle_rad_[kindOf(Angle::View)][k] = static_cast<float>(std::atan2(sine, n.z));
       if (k >= lit_.size()) continue;
       // x of the frame towards the viewer, across the normal.
       const glm::dvec3 along = sine > 0.0 ? glm::dvec3(-n.x * n.z / sine, -n.y * n.z / sine, sine) : glm::dvec3(1.0, 0.0, 0.0);
       const glm::dvec3 own(glm::dot(light, along), glm::dot(light, glm::cross(n, along)), glm::dot(light, n)), seen(sine, 0.0, n.z);
       lit_[k] = {own, sine, n.z};
-      for (Angle kind : {Angle::Incidence, Angle::Specular, Angle::Half, Angle::HalfRoot})
-        angle_rad_[kindOf(kind)][k] = static_cast<float>(angleBetween(kind, own, seen));
+      for (Angle kind : {Angle::Incidence, Angle::Specular}) angle_rad_[kindOf(kind)][k] = static_cast<float>(angleBetween(kind, own, seen));
+      const double half = angleBetween(Angle::Incidence, perHalf * (own + seen), seen);
+      angle_rad_[kindOf(Angle::Half)][k] = static_cast<float>(half);
+      angle_rad_[kindOf(Angle::HalfRoot)][k] = static_cast<float>(rootOfHalf(half));
     }
   });
 }

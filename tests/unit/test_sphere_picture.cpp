@@ -108,7 +108,8 @@ TEST(SpherePicture, SpectralPhongBeatsThePaper) {
       if (near) view.centre_px += view.radius_px * glm::dvec2(-half.x, half.y);
       const auto drawn = SpherePicture(eye(), {Spectrum(1.0), direction}, view).draw(*material);
       std::vector<glm::dvec3> exact, ours;
-      double most = 0.0;
+      double most = 0.0, worst = 0.0, mostY = 0.0;
+      for (float y : drawn[1]) mostY = std::max(mostY, static_cast<double>(y));
       for (int row = 0; row < kSide; ++row)
         for (int column = 0; column < kSide; ++column) {
           const auto seen = seenAt(view, direction, column, row);
@@ -122,12 +123,14 @@ TEST(SpherePicture, SpectralPhongBeatsThePaper) {
           most = std::max({most, exact.back().x, exact.back().y, exact.back().z});
           const std::size_t p = pixelOf(view, column, row);
           ours.push_back(linearSrgb({drawn[0][p], drawn[1][p], drawn[2][p]}));
+          worst = std::max(worst, std::abs(static_cast<double>(drawn[1][p]) - xyz.y) / std::max(xyz.y, 1e-3 * mostY));
         }
       double sum = 0.0;
       for (std::size_t k = 0; k < ours.size(); ++k) sum += glm::dot(ours[k] - exact[k], ours[k] - exact[k]);
       bound(print("sphere, %s, %s, RMS error of linear sRGB in 8-bit units", curves.name, near ? "near" : "far"),
             255.0 / most * std::sqrt(sum / (3.0 * static_cast<double>(ours.size()))), near ? curves.near : curves.far,
             "Table 1 of the paper, 200 entries; against sums at 1 nm steps, the brightest is 255");
+      bound(print("sphere, %s, %s, worst error of Y at a pixel", curves.name, near ? "near" : "far"), worst, view.accuracy, "accuracy 1e-3");
     }
   }
 }
@@ -158,6 +161,22 @@ TEST(SpherePicture, WarmSpheresInClosedForm) {
   const auto black = SpherePicture({kInfrared}, {}, view).draw(*knownMaterial("blackbody"));
   figure("black sphere of 300 K in 8 to 12 um, its middle [W/(m2 sr)]", static_cast<double>(black[0][pixelOf(view, 16, 16)]), blackBodyBand(8, 12, 300), 1e-5,
          "Planck's law by its series; single precision and a tenth of an accuracy of 1e-3 for wavelengths");
+  // What films emit changes with wavelength and view.
+  const auto titanium = knownMaterial("anodised_titanium");
+  const auto warm = SpherePicture({kInfrared}, {}, view).draw(*titanium);
+  double off = 0.0;
+  for (int column = 16; column < 31; ++column) {
+    const double angle = std::acos(seenAt(view, {0, 0, 1}, column, 16)->view.z);
+    double sum = 0.0;
+    constexpr int kSteps = 200;
+    for (int i = 0; i < kSteps; ++i) {
+      const double w = 8.0 + 4.0 * (i + 0.5) / kSteps;
+      sum += 4.0 / kSteps * titanium->emissivity(w, angle) * physics::planckRadiance(w, 300.0);
+    }
+    off = std::max(off, std::abs(static_cast<double>(warm[0][pixelOf(view, column, 16)]) / sum - 1.0));
+  }
+  bound("anodised_titanium at 300 K, worst error of 15 pixels from its middle to its edge", off, view.accuracy,
+        "emissivity x Planck's law summed at 20 nm steps; accuracy 1e-3");
   // Within walls as warm as itself everything that is opaque looks black.
   SphereLight within;
   within.ambient = Spectrum(Spectrum::BlackBody{300.0, 1.0});
@@ -233,6 +252,8 @@ TEST(SpherePicture, RefusesWhatItCannotDraw) {
   } catch (const UserError& e) {
     EXPECT_NE(std::string(e.what()).find("channel 'lw'"), std::string::npos) << e.what();
   }
+  const Spectrum lamp(Spectrum::Table{{1.0, 9.0}, {1.0, 1.0}, Outside::Error, "lamp"});
+  EXPECT_THROW(SpherePicture({kInfrared}, {lamp, {0, 0, 1}}, {}), UserError) << "no light known from 9 to 12 um";
   EXPECT_THROW(SpherePicture({}, {}, {}), UserError);
   EXPECT_THROW(SpherePicture({kInfrared}, {Spectrum(1.0), {0, 0, 0}}, {}), UserError);
 }
