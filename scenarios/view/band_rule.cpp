@@ -10,7 +10,7 @@
 namespace pitviper {
 namespace {
 
-/// Cells of a 32nd of an octave: two Gauss points see Planck's law to 1e-5 where it is 1e-7 of its peak.
+/// Cells of a 32nd of an octave: two Gauss points are off by (x ln(2) / 32)^4 / 4320 of Planck's law at x = c2 / (lambda T): 2e-5 at 25.
 constexpr double kCell_octaves = 1.0 / 32.0;
 
 struct FineRule {

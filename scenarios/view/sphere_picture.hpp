@@ -1,5 +1,6 @@
 #pragma once
 // A sphere of a material under one light, drawn on the CPU at once: what stands beside a curve that is dragged.
+#include <array>
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
@@ -37,13 +38,14 @@ struct SphereView {
 
 class SpherePicture {
  public:
-  /// Prepares all that does not depend on a material: keep it while a curve changes. UserError where view, light or channels are none.
+  /// Prepares all that does not depend on a material: keep it while a curve changes. UserError where view, light or channels are none, or the light
+  /// is not known where a channel looks.
   SpherePicture(std::vector<SphereChannel> channels, SphereLight light, SphereView view);
 
   /// [channel][pixel], rows from the top: light of the lamp by the components' BRDF, of what is around by their hemispherical reflectance, and emissivity x
-  /// Planck's law. 0 beside the sphere. One value per pixel's middle: edges are hard. Textures count as 1, states that a texture drives as their first; of
-  /// a temperature's states those beside it. What is seen through a material is left out. Runs on as many threads as there are cores. UserError where it is a
-  /// medium or has no data where a channel has light.
+  /// Planck's law (left out of channels in which a black body has less than 1e-9 of the lamp's light). 0 beside the sphere. One value per pixel's middle: edges
+  /// are hard. Textures count as 1, states that a texture drives as their first; of a temperature's states those beside it. What is seen through a material is
+  /// left out. Runs on as many threads as there are cores. UserError where it is a medium or has no data where a channel has light.
   std::vector<std::vector<float>> draw(const Material& material) const;
 
   const std::vector<SphereChannel>& channels() const { return channels_; }

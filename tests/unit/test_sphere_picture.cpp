@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+#include "materials/brdf_table.hpp"
+#include "materials/reflection.hpp"
 #include "scenarios/view/eye_channels.hpp"
 #include "scenarios/view/sphere_picture.hpp"
 #include "sim/image/srgb.hpp"
@@ -196,8 +198,24 @@ TEST(SpherePicture, AnyMaterialAgainstItsBrdf) {
   const glm::dvec3 direction(0.5, 0.2, 0.8);
   const SphereView view{64, 30.0, {32.0, 32.0}, 0.0};
   const Spectrum daylight = lightOfLibrary("cie_d65");
-  for (const char* name : {"gold", "grey_aircraft_paint", "anodised_titanium", "black_gloss_paint"}) {
-    const auto material = knownMaterial(name);
+  std::vector<std::pair<std::string, std::shared_ptr<const Material>>> materials;
+  for (const char* name : {"gold", "grey_aircraft_paint", "anodised_titanium"}) materials.emplace_back(name, knownMaterial(name));
+  for (const char* component :
+       {"{reflection: ward, reflectance: 0.6, roughness: 0.15}", "{reflection: sandford_robertson, emissivity: 0.55, diffuse: 0.25, grazing: 0.25, width: 0.2}",
+        "{reflection: beard_maxwell, n: 1.5, k: 0.1, scan: 0.0008, width: 0.2, tau: 30 deg, omega: 40 deg, diffuse: 0.05}"})
+    materials.emplace_back(std::string(component).substr(1, std::string(component).find(',') - 1),
+                           sphereMaterial(std::string("components: [") + component + "]"));
+  const Angle pairs[][2] = {{Angle::Half, Angle::Difference}, {Angle::HalfRoot, Angle::View}, {Angle::Difference, Angle::Specular}};
+  for (const auto& pair : pairs) {
+    // Rugged, over two angles and three wavelengths.
+    BrdfTable table{{0.3, 0.55, 0.9}, {AngleAxis{pair[0], 5, 1.4}, AngleAxis{pair[1], 3, 1.5}}, {}};
+    for (int k = 0; k < 3 * 5 * 3; ++k) table.values.push_back(0.02 + 0.01 * (k * k % 11));
+    auto made = std::make_shared<Material>();
+    made->reflections = {makeTabulated(table)};
+    made->modifiers = {-1};
+    materials.emplace_back(print("a table over angles %d and %d", static_cast<int>(pair[0]), static_cast<int>(pair[1])), made);
+  }
+  for (const auto& [name, material] : materials) {
     const auto drawn = SpherePicture(eye(), {daylight, direction}, view).draw(*material);
     std::mt19937 random(7);
     std::vector<Seen> seen;
@@ -226,7 +244,7 @@ TEST(SpherePicture, AnyMaterialAgainstItsBrdf) {
       for (int k = 0; k < 3; ++k)
         worst =
             std::max(worst, std::abs(static_cast<double>(drawn[static_cast<std::size_t>(k)][pixels[p]]) - sums[p][k]) / std::max(sums[p][k], 1e-3 * most[k]));
-    bound(std::string("sphere of ") + name + ", worst error of X, Y or Z at 50 pixels", worst, view.accuracy, "its BRDF summed at 1 nm steps; accuracy 1e-3");
+    bound("sphere of " + name + ", worst error of X, Y or Z at 50 pixels", worst, view.accuracy, "its BRDF summed at 1 nm steps; accuracy 1e-3");
   }
 }
 
