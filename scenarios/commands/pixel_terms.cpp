@@ -39,7 +39,7 @@ const Camera& cameraOf(const ExrImage& frame, const std::string& file, const Sim
 Pose poseOf(const ExrImage& frame, const Simulation& sim, const std::string& file) {
   const auto numbers = [&](const char* name, std::size_t count) {
     const Attribute* a = frame.findAttribute(name);
-    const auto* values = a ? std::get_if<std::vector<double>>(&a->value) : nullptr;
+    const auto values = a ? numbersOf(*a) : std::nullopt;
     if (!values || values->size() != count)
       throw UserError({file, 0, 0, -1}, std::string("a frame without '") + name + "'", "a frame as a run wrote it", "draw the frame again");
     return *values;
