@@ -32,7 +32,8 @@ FrameNotes notesIn(const NotedJson& json, const Location& where) {
     throw UserError(where, "a side is not in 1 to 32768", "the width and height of a frame", "write the frame again");
   notes.frame.width = static_cast<int>(width), notes.frame.height = static_cast<int>(height);
   const NotedJson& layers = json.at("layers");
-  if (layers.empty() || layers.size() > kMostPictures) throw UserError(where, "the frame has no layers or more than 1024", "1 to 1024", "write the frame again");
+  if (layers.empty() || layers.size() > kMostPictures)
+    throw UserError(where, "the frame has no layers or more than 1024", "1 to 1024", "write the frame again");
   for (const NotedJson& l : layers) {
     LayerCode code{l.at("name").get<std::string>(), l.value("file", ""), l.at("type").get<std::string>()};
     if (l.contains("low")) code.low = notedNumber(l.at("low"));

@@ -10,7 +10,7 @@
 namespace pitviper {
 
 struct FrameNotes {
-  Frame frame;                    ///< layers without pixels
+  Frame frame;                   ///< layers without pixels
   std::vector<LayerCode> codes;  ///< of each layer
 };
 

@@ -45,9 +45,9 @@ std::string startOf(const std::filesystem::path& file) {
 
 /// By extension and beginning: a grey PNG, not a colour one; an ENVI header, not a Radiance picture.
 bool looksLikeFrame(const std::filesystem::path& file) {
-  static const std::multimap<std::string, std::string> beginnings = {{".exr", "\x76\x2f\x31\x01"}, {".tif", "II"},        {".tif", "MM"},        {".tiff", "II"},
-                                                                     {".tiff", "MM"},              {".fits", "SIMPLE  ="}, {".fit", "SIMPLE  ="}, {".fts", "SIMPLE  ="},
-                                                                     {".png", "\x89PNG"},          {".raw", "PITVRAW1"},  {".hdr", "ENVI"}};
+  static const std::multimap<std::string, std::string> beginnings = {
+      {".exr", "\x76\x2f\x31\x01"}, {".tif", "II"},        {".tif", "MM"},      {".tiff", "II"},      {".tiff", "MM"}, {".fits", "SIMPLE  ="},
+      {".fit", "SIMPLE  ="},        {".fts", "SIMPLE  ="}, {".png", "\x89PNG"}, {".raw", "PITVRAW1"}, {".hdr", "ENVI"}};
   const auto [first, last] = beginnings.equal_range(file.extension().string());
   if (first == last) return false;
   const std::string start = startOf(file);

@@ -94,11 +94,16 @@ using ReadFunction = Frame (*)(const std::filesystem::path&);
 
 /// What reads a file, by its content and, of ENVI's pixels, by the header beside it. Null: nothing.
 ReadFunction readerOf(const std::filesystem::path& file) {
-  static const FrameReader readers[] = {{"\x76\x2f\x31\x01", 4, readExrFrame}, {"SIMPLE  =", 9, [](const std::filesystem::path& f) { return frameOf(readFits(f)); }},
-                                        {"II*\0", 4, readTiffFrame},           {"MM\0*", 4, readTiffFrame},
-                                        {"II+\0", 4, readTiffFrame},           {"MM\0+", 4, readTiffFrame},
-                                        {"\x89PNG\r\n\x1a\n", 8, readPngFrame}, {"PITVRAW1", 8, readRawFrame},
-                                        {"ENVI", 4, readEnviFrame},            {"{", 1, readJsonFrame}};
+  static const FrameReader readers[] = {{"\x76\x2f\x31\x01", 4, readExrFrame},
+                                        {"SIMPLE  =", 9, [](const std::filesystem::path& f) { return frameOf(readFits(f)); }},
+                                        {"II*\0", 4, readTiffFrame},
+                                        {"MM\0*", 4, readTiffFrame},
+                                        {"II+\0", 4, readTiffFrame},
+                                        {"MM\0+", 4, readTiffFrame},
+                                        {"\x89PNG\r\n\x1a\n", 8, readPngFrame},
+                                        {"PITVRAW1", 8, readRawFrame},
+                                        {"ENVI", 4, readEnviFrame},
+                                        {"{", 1, readJsonFrame}};
   const std::string start = readFileStart(file, 64);
   for (const FrameReader& r : readers)
     if (start.starts_with(std::string_view(r.start, r.bytes))) return r.read;
@@ -132,8 +137,8 @@ void takeAttributes(Frame& frame) {
 Frame readFrame(const std::filesystem::path& file) {
   const auto read = readerOf(file);
   if (!read)
-    throw UserError({.file = file.string()}, "the file is no frame that is read here", "an EXR, FITS, TIFF, ENVI, raw or grey PNG file, or the JSON of PNG files",
-                    "name another file, or convert it");
+    throw UserError({.file = file.string()}, "the file is no frame that is read here",
+                    "an EXR, FITS, TIFF, ENVI, raw or grey PNG file, or the JSON of PNG files", "name another file, or convert it");
   try {
     Frame frame = read(file);
     nameLayers(frame);

@@ -9,11 +9,11 @@ namespace pitviper {
 
 /// All in the layer's unit; NaN where no pixel counts.
 struct RegionFigures {
-  std::size_t count = 0;     ///< finite pixels
-  std::size_t leftOut = 0;   ///< pixels that are not finite
+  std::size_t count = 0;                       ///< finite pixels
+  std::size_t leftOut = 0;                     ///< pixels that are not finite
   double mean = 0.0, standardDeviation = 0.0;  ///< the latter of the sample (n - 1); NaN of one pixel
   double minimum = 0.0, maximum = 0.0;
-  double median = 0.0;       ///< of an even count the mean of the middle two
+  double median = 0.0;                 ///< of an even count the mean of the middle two
   std::vector<std::size_t> histogram;  ///< even bins from minimum to maximum, which is in the last; all in the first where these are equal
 };
 
@@ -33,9 +33,9 @@ RegionContrast contrastOf(const FrameLayer& layer, int width, int height, const 
 
 /// A value along a line; places are of pixels' middles: (0, 0) is the middle of the first pixel.
 struct ProfilePoint {
-  double x = 0.0, y = 0.0;    ///< [pixels]
-  double distance_px = 0.0;   ///< from the line's beginning
-  double value = 0.0;         ///< NaN beyond the middles of the outermost pixels, and beside pixels that are not finite
+  double x = 0.0, y = 0.0;   ///< [pixels]
+  double distance_px = 0.0;  ///< from the line's beginning
+  double value = 0.0;        ///< NaN beyond the middles of the outermost pixels, and beside pixels that are not finite
 };
 
 /// One point a pixel's length from (x0, y0), and the end of the line last. Between pixels' middles values are bilinear.

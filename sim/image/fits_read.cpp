@@ -129,6 +129,8 @@ class FitsReader {
           const std::size_t equals = card.find('=');
           if (equals == std::string_view::npos || equals < 9) continue;
           key = trimmed(card.substr(9, equals - 9)), value = card.substr(equals + 1);
+          // cfitsio writes capitals; names of this program are in small letters but for some parts of them.
+          for (char& c : key) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
         } else if (card.substr(8, 2) != "= ") continue;
         header.cards.push_back(fitsValue(key, value));
       }
@@ -181,7 +183,8 @@ class FitsReader {
     if (planes > kMostPictures || file_.pictures.size() + planes > kMostPictures)
       throw UserError(where_, "the file has more than 1024 images", "at most 1024", "split the file");
     if (!file_.pictures.empty() && (static_cast<int>(width) != file_.width || static_cast<int>(height) != file_.height))
-      throw UserError(where_, print("images are %d x %d and %zu x %zu pixels", file_.width, file_.height, width, height), "images of one size", "split the file");
+      throw UserError(where_, print("images are %d x %d and %zu x %zu pixels", file_.width, file_.height, width, height), "images of one size",
+                      "split the file");
     file_.width = static_cast<int>(width), file_.height = static_cast<int>(height);
     const double zero = header.number("BZERO", 0.0), scale = header.number("BSCALE", 1.0), blank = header.number("BLANK", NAN);
     const bool plain = zero == 0.0 && scale == 1.0;

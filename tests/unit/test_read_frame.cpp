@@ -60,7 +60,11 @@ Frame sampleFrame() {
   }
   radiance.pixels[7] = -0.0f, radiance.pixels[8] = std::numeric_limits<float>::denorm_min(), radiance.pixels[9] = INFINITY;
   frame.layers = {radiance, counts, range};
-  frame.attributes = {{"pitviper.camera", frame.camera}, {"pitviper.frame", frame.number}, {"pitviper.time_s", frame.time_s}, {"pitviper.exposure_s", 0.002}};
+  frame.attributes = {{"pitviper.camera", frame.camera},
+                      {"pitviper.frame", frame.number},
+                      {"pitviper.time_s", frame.time_s},
+                      {"pitviper.exposure_s", 0.002},
+                      {"target.jet.place", std::vector<double>{1.5, 2.25, -3.0}}};
   for (const FrameLayer& l : frame.layers) frame.attributes.push_back({"unit." + l.name, l.unit});
   return frame;
 }
@@ -81,8 +85,7 @@ bool sameBits(const std::vector<float>& a, const std::vector<float>& b) {
 void expectFrameOrUserError(const fs::path& file, const std::string& what) {
   try {
     const Frame frame = readFrame(file);
-    for (const FrameLayer& l : frame.layers)
-      ASSERT_EQ(l.pixels.size(), static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height)) << what;
+    for (const FrameLayer& l : frame.layers) ASSERT_EQ(l.pixels.size(), static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height)) << what;
   } catch (const UserError&) {
   } catch (const std::exception& e) {
     FAIL() << what << ": " << e.what();
@@ -136,7 +139,9 @@ TEST_F(ReadFrame, WhatEveryFormatWritesComesBack) {
         else EXPECT_NEAR(read->pixels[p], l.pixels[p], 0.51f * (high - low) / 65534.0f) << l.name;  // half a code, and rounding of floats
       }
     }
-    bool hasExposure = false;
+    bool hasExposure = false, hasPlace = false;
+    for (const Attribute& a : back.attributes) hasPlace |= a.name == "target.jet.place" && numbersOf(a) == std::vector<double>{1.5, 2.25, -3.0};
+    EXPECT_TRUE(hasPlace) << format.name;
     for (const Attribute& a : back.attributes) hasExposure |= a.name == "pitviper.exposure_s" && numbersOf(a) == std::vector<double>{0.002};
     EXPECT_TRUE(hasExposure) << format.name;
   }
@@ -144,7 +149,8 @@ TEST_F(ReadFrame, WhatEveryFormatWritesComesBack) {
 
 TEST_F(ReadFrame, EnviOfEveryTypeInterleaveAndByteOrder) {
   // Bands {1 2; 3 4} and {5 6; 7 8}.
-  const std::map<std::string, std::vector<int>> orders = {{"bsq", {1, 2, 3, 4, 5, 6, 7, 8}}, {"bil", {1, 2, 5, 6, 3, 4, 7, 8}}, {"bip", {1, 5, 2, 6, 3, 7, 4, 8}}};
+  const std::map<std::string, std::vector<int>> orders = {
+      {"bsq", {1, 2, 3, 4, 5, 6, 7, 8}}, {"bil", {1, 2, 5, 6, 3, 4, 7, 8}}, {"bip", {1, 5, 2, 6, 3, 7, 4, 8}}};
   for (const int type : {1, 2, 3, 4, 5, 12, 13})
     for (const bool big : {false, true})
       for (const auto& [order, values] : orders) {
@@ -161,8 +167,8 @@ TEST_F(ReadFrame, EnviOfEveryTypeInterleaveAndByteOrder) {
           bytes += one;
         }
         put("cube.img", bytes);
-        put("cube.hdr", enviHeader("header offset = 4\ndata type = " + std::to_string(type) + "\ninterleave = " + order + "\nbyte order = " + (big ? "1" : "0") +
-                                   "\nband names = {first [K],\n second}\nwavelength = {3.5, 4.5}\n"));
+        put("cube.hdr", enviHeader("header offset = 4\ndata type = " + std::to_string(type) + "\ninterleave = " + order +
+                                   "\nbyte order = " + (big ? "1" : "0") + "\nband names = {first [K],\n second}\nwavelength = {3.5, 4.5}\n"));
         for (const char* name : {"cube.hdr", "cube.img"}) {
           const Frame frame = readFrame(folder_ / name);
           ASSERT_EQ(frame.layers.size(), 2u);
@@ -186,10 +192,11 @@ TEST_F(ReadFrame, FitsScalesBlanksAndCubes) {
   std::string data;
   for (const int v : {1, 2, 3, -9, 5, 6, 7, 8}) data += {static_cast<char>(v >> 8), static_cast<char>(v)};
   data.resize(2880, '\0');
-  put("cube.fits", fitsHeader({"SIMPLE  =                    T", "BITPIX  =                   16", "NAXIS   =                    3", "NAXIS1  =                    2",
-                               "NAXIS2  =                    2", "NAXIS3  =                    2", "BSCALE  =                0.5D0", "BZERO   =                 10.0",
-                               "BLANK   =                   -9", "BUNIT   = 'K       '           / unit", "OBJECT  = 'it''s here'"}) +
-                       data);
+  put("cube.fits",
+      fitsHeader({"SIMPLE  =                    T", "BITPIX  =                   16", "NAXIS   =                    3", "NAXIS1  =                    2",
+                  "NAXIS2  =                    2", "NAXIS3  =                    2", "BSCALE  =                0.5D0", "BZERO   =                 10.0",
+                  "BLANK   =                   -9", "BUNIT   = 'K       '           / unit", "OBJECT  = 'it''s here'"}) +
+          data);
   const Frame frame = readFrame(folder_ / "cube.fits");
   ASSERT_EQ(frame.layers.size(), 2u);
   EXPECT_EQ(frame.layers[0].name, "001");
@@ -198,8 +205,8 @@ TEST_F(ReadFrame, FitsScalesBlanksAndCubes) {
   EXPECT_EQ(frame.layers[1].pixels, (std::vector<float>{13.5f, 14.0f, 12.5f, 13.0f}));
   ASSERT_EQ(frame.attributes.size(), 1u);
   EXPECT_EQ(std::get<std::string>(frame.attributes[0].value), "it's here");
-  put("huge.fits", fitsHeader({"SIMPLE  =                    T", "BITPIX  =                  -64", "NAXIS   =                    2", "NAXIS1  =           1000000000",
-                               "NAXIS2  =           1000000000"}));
+  put("huge.fits", fitsHeader({"SIMPLE  =                    T", "BITPIX  =                  -64", "NAXIS   =                    2",
+                               "NAXIS1  =           1000000000", "NAXIS2  =           1000000000"}));
   EXPECT_NE(messageOf("huge.fits").find("ends before"), std::string::npos);
 }
 
@@ -229,7 +236,7 @@ TEST_F(ReadFrame, TiffOfOtherProgramsInTilesOrPacked) {
     }
     TIFFClose(tiff);
   };
-  const std::vector<std::pair<int, int>> types = {{8, SAMPLEFORMAT_UINT}, {8, SAMPLEFORMAT_INT},  {16, SAMPLEFORMAT_INT},    {32, SAMPLEFORMAT_UINT},
+  const std::vector<std::pair<int, int>> types = {{8, SAMPLEFORMAT_UINT}, {8, SAMPLEFORMAT_INT},     {16, SAMPLEFORMAT_INT},   {32, SAMPLEFORMAT_UINT},
                                                   {32, SAMPLEFORMAT_INT}, {32, SAMPLEFORMAT_IEEEFP}, {64, SAMPLEFORMAT_IEEEFP}};
   for (const auto& [bits, format] : types)
     for (const bool tiled : {false, true})

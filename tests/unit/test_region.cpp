@@ -78,7 +78,7 @@ TEST(Region, DiskStandsOutOfACheckeredGroundByItsHeight) {
   EXPECT_EQ(c.inside.count, 81u);
   EXPECT_EQ(c.ring.count, static_cast<std::size_t>(side * side - 81));
   const double disks = 317.0 - 81.0, n = side * side - 81.0;
-  const double ground = 10.0;  // of both colours, but for one pixel more of one of them
+  const double ground = 10.0;                                                     // of both colours, but for one pixel more of one of them
   EXPECT_NEAR(c.ring.mean, (disks * 50.0 + (n - disks) * ground) / n, 40.0 / n);  // colours in the disk are not even by some pixels
   EXPECT_DOUBLE_EQ(c.contrast, 50.0 - c.ring.mean);
   EXPECT_DOUBLE_EQ(c.signalToNoise, c.contrast / c.ring.standardDeviation);
