@@ -1,5 +1,6 @@
 // Frames read back as they were written, and files that are damaged.
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <tiffio.h>
 #include <unistd.h>
 
@@ -79,6 +80,13 @@ bool sameBits(const std::vector<float>& a, const std::vector<float>& b) {
   return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](float x, float y) {
            return std::bit_cast<std::uint32_t>(x) == std::bit_cast<std::uint32_t>(y) || (std::isnan(x) && std::isnan(y));
          });
+}
+
+/// The most memory that this process had so far [kB].
+long peakMemory_kB() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss;
 }
 
 /// A frame or a UserError; anything else fails the test.
@@ -300,6 +308,7 @@ TEST_F(ReadFrame, DifferenceOfTwo) {
 TEST_F(ReadFrame, DamagedFilesGiveAFrameOrAUserError) {
   const Frame frame = sampleFrame();
   std::mt19937 random(7);
+  const long before_kB = peakMemory_kB();
   for (const FileFormat& format : fileFormats()) {
     const fs::path file = folder_ / (format.name + format.extension);
     format.write(file, frame, {});
@@ -321,6 +330,7 @@ TEST_F(ReadFrame, DamagedFilesGiveAFrameOrAUserError) {
       put(name, whole);
     }
   }
+  EXPECT_LT(peakMemory_kB() - before_kB, 64 * 1024);  // files have 2 kB at most; what libraries take once is some MB
 }
 
 }  // namespace pitviper::test
