@@ -70,13 +70,14 @@ Attribute enviAttribute(const std::string& name, const std::string& value) {
 /// The header and the pixels of either.
 std::pair<std::filesystem::path, std::filesystem::path> enviFiles(const std::filesystem::path& file) {
   std::filesystem::path header = file, pixels = file;
+  std::error_code failure;
   if (file.extension() != ".hdr" && file.extension() != ".HDR") {
     header.replace_extension(".hdr");
-    if (!std::filesystem::exists(header)) header = file.string() + ".hdr";
+    if (!std::filesystem::exists(header, failure)) header = file.string() + ".hdr";
     return {header, pixels};
   }
   for (const char* extension : {"", ".img", ".dat", ".raw", ".bsq", ".bil", ".bip", ".bin"})
-    if (std::filesystem::is_regular_file(pixels.replace_extension(extension))) return {header, pixels};
+    if (std::filesystem::is_regular_file(pixels.replace_extension(extension), failure)) return {header, pixels};
   return {header, pixels.replace_extension(".img")};
 }
 

@@ -14,6 +14,12 @@
 namespace pitviper {
 namespace {
 
+/// False too where it cannot be told, as of names that are too long.
+bool isFile(const std::filesystem::path& path) {
+  std::error_code failure;
+  return std::filesystem::is_regular_file(path, failure);
+}
+
 Frame frameOf(PictureFile file) {
   Frame frame;
   frame.width = file.width, frame.height = file.height;
@@ -40,9 +46,9 @@ Frame readTiffFrame(const std::filesystem::path& file) {
   Frame frame = frameOf(readTiff(file));
   std::filesystem::path beside = file;
   beside.replace_extension(".json");
-  if (!std::filesystem::is_regular_file(beside)) return frame;
+  if (!isFile(beside)) return frame;
   try {
-    FrameNotes notes = frameNotes(readWholeFile(beside), {.file = beside.string()});
+    FrameNotes notes = frameNotes(readWholeFile(beside, {.mostBytes = std::uintmax_t{256} << 20}), {.file = beside.string()});
     if (notes.codes.front().file != file.filename().string()) return frame;
     frame.camera = notes.frame.camera, frame.number = notes.frame.number, frame.time_s = notes.frame.time_s;
     frame.attributes = std::move(notes.frame.attributes);
@@ -109,7 +115,7 @@ ReadFunction readerOf(const std::filesystem::path& file) {
     if (start.starts_with(std::string_view(r.start, r.bytes))) return r.read;
   std::filesystem::path header = file;
   header.replace_extension(".hdr");
-  if (header != file && (std::filesystem::is_regular_file(header) || std::filesystem::is_regular_file(file.string() + ".hdr"))) return readEnviFrame;
+  if (header != file && (isFile(header) || isFile(file.string() + ".hdr"))) return readEnviFrame;
   return nullptr;
 }
 
