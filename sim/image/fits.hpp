@@ -6,6 +6,7 @@
 
 #include "sim/image/atomic_file.hpp"
 #include "sim/image/exr.hpp"
+#include "sim/image/picture_file.hpp"
 
 namespace pitviper {
 
@@ -26,5 +27,13 @@ void writeFits(const std::filesystem::path& path, int width, int height, const s
 
 /// The text of a keyword of at most 8 letters in the primary header. Nothing where it isn't there. Never throws but std::bad_alloc.
 std::optional<std::string> readFitsText(const std::filesystem::path& path, std::string_view keyword);
+
+/// Images of the primary part and of IMAGE extensions, of every BITPIX, scaled by BSCALE and BZERO; BLANK and NaN become NaN. Planes of a cube are images named
+/// `NAME.001`, .... Tables are left out. Keywords of the primary header become attributes: `NAME.1`, `NAME.2`, ... a list again; HIERARCH
+/// names come in small letters, as the file does not keep them.
+/// Read without cfitsio, whose readers do not withstand damaged files.
+/// Errors: UserError with the file name for other files, those that are damaged, truncated or without an image, images of different sizes, over 32768 on a
+/// side, more than 1024, of more than three axes, compressed in tables, or random groups.
+PictureFile readFits(const std::filesystem::path& path);
 
 }  // namespace pitviper
