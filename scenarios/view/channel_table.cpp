@@ -15,7 +15,7 @@ constexpr int kStretches = 32;
 
 class Bisection {
  public:
-  Bisection(const AngleAxis& axis, std::size_t channels, double accuracy, const ChannelValues& at)
+  Bisection(const AngleAxis& axis, std::size_t channels, double accuracy, const ValuesAtAngles& at)
       : axis_(axis),
         channels_(channels),
         accuracy_(accuracy),
@@ -88,7 +88,7 @@ class Bisection {
   AngleAxis axis_;
   std::size_t channels_;
   double accuracy_;
-  const ChannelValues& at_;
+  const ValuesAtAngles& at_;
   std::vector<bool> known_;
   std::vector<double> values_, most_;
   std::vector<int> wanted_;
@@ -102,7 +102,7 @@ ChannelTable byChannel(const std::array<AngleAxis, 2>& axes, std::size_t channel
 
 }  // namespace
 
-ChannelTable filledTable(const std::array<AngleAxis, 2>& axes, std::size_t channels, const ChannelValues& at) {
+ChannelTable filledTable(const std::array<AngleAxis, 2>& axes, std::size_t channels, const ValuesAtAngles& at) {
   const auto inner = static_cast<std::size_t>(axes[0].count), entries = inner * static_cast<std::size_t>(axes[1].count);
   std::vector<double> values(entries * channels);
   onStretches(entries, kLeastEntries, [&](std::size_t from, std::size_t to) {
@@ -111,7 +111,7 @@ ChannelTable filledTable(const std::array<AngleAxis, 2>& axes, std::size_t chann
   return byChannel(axes, channels, values);
 }
 
-ChannelTable bisectedTable(const AngleAxis& axis, std::size_t channels, double accuracy, const ChannelValues& at) {
+ChannelTable bisectedTable(const AngleAxis& axis, std::size_t channels, double accuracy, const ValuesAtAngles& at) {
   return byChannel({axis, AngleAxis{}}, channels, Bisection(axis, channels, accuracy, at).values());
 }
 

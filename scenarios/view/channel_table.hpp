@@ -14,12 +14,12 @@ struct ChannelTable {
 };
 
 /// Puts values[channel] of an angle on each axis.
-using ChannelValues = std::function<void(const std::array<double, 2>& angles_rad, double* values)>;
+using ValuesAtAngles = std::function<void(const std::array<double, 2>& angles_rad, double* values)>;
 
 /// Asks for all entries, on several threads at once.
-ChannelTable filledTable(const std::array<AngleAxis, 2>& axes, std::size_t channels, const ChannelValues& at);
+ChannelTable filledTable(const std::array<AngleAxis, 2>& axes, std::size_t channels, const ValuesAtAngles& at);
 
 /// Over one axis: entries between those asked for are linear where that is off by less than `accuracy` of the value, or of a thousandth of the largest.
-ChannelTable bisectedTable(const AngleAxis& axis, std::size_t channels, double accuracy, const ChannelValues& at);
+ChannelTable bisectedTable(const AngleAxis& axis, std::size_t channels, double accuracy, const ValuesAtAngles& at);
 
 }  // namespace pitviper

@@ -247,7 +247,7 @@ SpherePicture::Part SpherePicture::part(const Material& m, double share) const {
   Part made;
   for (const auto& r : m.reflections) {
     const FreeAxes free(*r, difference_rad_);
-    const ChannelValues at = [&](const std::array<double, 2>& angles, double* values) {
+    const ValuesAtAngles at = [&](const std::array<double, 2>& angles, double* values) {
       const auto all = free.at(angles);
       std::fill(values, values + channels, 0.0);
       sum(0, values, [&](double w) { return r->column(w, all[0], all[1]); });
@@ -271,7 +271,7 @@ SpherePicture::Part SpherePicture::part(const Material& m, double share) const {
     };
     const bool varies = m.hemisphericalVaries();
     const AngleAxis axis{varies ? Angle::View : Angle::None, varies ? kViewEntries : 1, varies ? kQuarterTurn : 0.0};
-    const ChannelValues at = [&](const std::array<double, 2>& angles, double* values) { leaves(angles[0], values); };
+    const ValuesAtAngles at = [&](const std::array<double, 2>& angles, double* values) { leaves(angles[0], values); };
     made.own = varies ? bisectedTable(axis, channels, kOfAngles * view_.accuracy, at) : filledTable({axis, AngleAxis{}}, channels, at);
   }
   return made;

@@ -257,6 +257,15 @@ EditedSurface polishedFace(const Value& tree, const std::string& name) {
   return s;
 }
 
+std::vector<std::string> stemsIn(const std::filesystem::path& folder) {
+  std::vector<std::string> names;
+  std::error_code ignored;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
 }  // namespace
 
 EditedSurface surfaceNamed(const std::string& word, const Libraries& libraries) {
@@ -265,11 +274,7 @@ EditedSurface surfaceNamed(const std::string& word, const Libraries& libraries) 
   if (!std::filesystem::is_regular_file(file, ignored)) {
     file = libraries.materials / (word + ".yaml");
     if (word.find('/') != std::string::npos || word.size() > 100 || !std::filesystem::is_regular_file(file, ignored)) {
-      std::vector<std::string> names;
-      for (const auto& entry : std::filesystem::directory_iterator(libraries.materials, ignored))
-        if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
-      std::sort(names.begin(), names.end());
-      throw unknownWord({word, 0, 0, -1}, "there is no material and no file", word, names, "check the name");
+      throw unknownWord({word, 0, 0, -1}, "there is no material and no file", word, stemsIn(libraries.materials), "check the name");
     }
   } else if (const auto imported = importedMaterial(file)) {
     SaidMaterial said{parseYaml(imported->yaml, file.string() + " as YAML"), file.parent_path(), nullptr};
@@ -285,5 +290,25 @@ EditedSurface surfaceNamed(const std::string& word, const Libraries& libraries) 
   }
   return surfaceOf({loadYaml(file, {file.string(), 0, 0, -1}), file.parent_path(), readMaterialFile(file, libraries)}, file.stem().string(), libraries);
 }
+
+EditedSurface surfaceWithin(const std::filesystem::path& scenario, const std::string& name, const std::shared_ptr<const Material>& material,
+                            const Libraries& libraries) {
+  const Value tree = loadYaml(scenario, {scenario.string(), 0, 0, -1});
+  const Value* all = tree.find("materials");
+  const Value* said = all ? all->find(name) : nullptr;
+  const Value* file = said ? said->find("file") : nullptr;
+  const std::filesystem::path base = scenario.parent_path();
+  if (file) return surfaceOf({loadYaml(base / file->text, file->where), (base / file->text).parent_path(), material}, name, libraries);
+  if (said) return surfaceOf({*said, base, material}, name, libraries);
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(libraries.materials / (name + ".yaml"), ignored)) return surfaceNamed(name, libraries);
+  Value elsewhere;
+  elsewhere.kind = Value::Kind::Map;
+  return surfaceOf({elsewhere, base, material}, name, libraries);
+}
+
+std::vector<std::string> libraryMaterials(const Libraries& libraries) { return stemsIn(libraries.materials); }
+
+std::vector<std::string> librarySubstances(const Libraries& libraries) { return stemsIn(libraries.materials.parent_path() / "substances"); }
 
 }  // namespace pitviper

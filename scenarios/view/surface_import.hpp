@@ -14,4 +14,12 @@ constexpr double kCurveTolerance = 1e-3;
 /// directional-hemispherical reflectance at normal view becomes the diffuse curve. notes: what that leaves out. UserError where there is no such surface.
 EditedSurface surfaceNamed(const std::string& word, const Libraries& libraries);
 
+/// A material as a scenario has it: by what the file says of it under 'materials:', or in the library; of one that is said elsewhere, as of any other kind.
+EditedSurface surfaceWithin(const std::filesystem::path& scenario, const std::string& name, const std::shared_ptr<const Material>& material,
+                            const Libraries& libraries);
+
+/// Names of the library's materials and substances.
+std::vector<std::string> libraryMaterials(const Libraries& libraries);
+std::vector<std::string> librarySubstances(const Libraries& libraries);
+
 }  // namespace pitviper

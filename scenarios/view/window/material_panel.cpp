@@ -1,14 +1,12 @@
 // Curves of a material under a hand, and what it then looks like: a sphere under two lights, and the scene.
-#include <GLFW/glfw3.h>
-
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "scenarios/view/edited_material.hpp"
+#include "scenarios/view/surface_import.hpp"
 #include "scenarios/view/window/panels.hpp"
 #include "scenarios/view/window/plot.hpp"
-#include "scenarios/view/window/sphere_view.hpp"
+#include "scenarios/view/window/sphere_tiles.hpp"
 #include "scenarios/view/window/style.hpp"
 #include "scenarios/view/window/widgets.hpp"
 #include "sim/image/atomic_file.hpp"
@@ -48,7 +46,7 @@ class MaterialPanel final : public Panel {
 
   /// What was edited is in the scene, once the scene before it has been drawn.
   void look(ViewState& state) override {
-    if (!asked_.empty()) {
+    if (!asked_.empty() && (state.hasScene() || state.wish.scenario.file.empty())) {
       const std::string word = std::exchange(asked_, {});
       open(state, word);
     }
@@ -100,15 +98,10 @@ class MaterialPanel final : public Panel {
   void open(ViewState& state, const std::string& word) {
     try {
       const int at = state.hasScene() ? numberOf(state, word) : -1;
-      EditedMaterial found = [&] {
-        try {
-          return EditedMaterial::named(word, findLibraries());
-        } catch (const UserError&) {
-          if (at < 0) throw;
-        }
-        return EditedMaterial(surfaceOf(*state.asRead->simulation.materials[static_cast<std::size_t>(at)]), findLibraries());
-      }();
-      edited_.emplace(std::move(found));
+      const Libraries libraries = findLibraries();
+      if (at < 0) edited_.emplace(EditedMaterial::named(word, libraries));
+      else
+        edited_.emplace(surfaceWithin(state.wish.scenario.file, word, state.asRead->simulation.materials[static_cast<std::size_t>(at)], libraries), libraries);
       opened_ = true;
       inScene_ = at;
       first_ = placed_ = edited_->revision();
@@ -120,6 +113,16 @@ class MaterialPanel final : public Panel {
     }
   }
 
+  static std::string pickedMaterial(const ViewState& state) {
+    if (!state.hasScene() || !state.pixel || !state.picture) return "";
+    const Frame& f = state.picture->frame;
+    const FrameLayer *entity = layerNamed(f, "truth.entity"), *part = layerNamed(f, "truth.part");
+    const auto at = static_cast<std::size_t>(state.pixel->y * f.width + state.pixel->x);
+    if (!entity || at >= entity->pixels.size()) return "";
+    const int m = materialAt(state.asRead->simulation, static_cast<int>(entity->pixels[at]) - 1, part ? static_cast<int>(part->pixels[at]) - 1 : 0);
+    return m < 0 ? "" : state.asRead->simulation.materials[static_cast<std::size_t>(m)]->name;
+  }
+
   void chooser(ViewState& state, float text) {
     if (libraryNames_.empty()) libraryNames_ = libraryMaterials(findLibraries());
     std::vector<std::string> names;
@@ -128,7 +131,8 @@ class MaterialPanel final : public Panel {
         if (!m->medium) names.push_back(m->name);
     for (const std::string& n : libraryNames_)
       if (std::find(names.begin(), names.end(), n) == names.end()) names.push_back(n);
-    if (const int k = choose(state.marks, "material", edited_ ? edited_->name() : "choose...", names, 15.0f * text); k >= 0) open(state, names[static_cast<std::size_t>(k)]);
+    if (const int k = choose(state.marks, "material", edited_ ? edited_->name() : "choose...", names, 15.0f * text); k >= 0)
+      open(state, names[static_cast<std::size_t>(k)]);
     ImGui::SameLine();
     if (button(state.marks, "material_picked", "that of the probe", "the material of the pixel that was clicked"))
       if (const std::string of = pickedMaterial(state); !of.empty()) open(state, of);
@@ -166,10 +170,14 @@ class MaterialPanel final : public Panel {
       top_ = top = axis.logarithmic ? std::pow(10.0, std::ceil(std::log10(top * 1.3))) : 1.3 * top;
     }
     const PlotAxis y{std::string(axis.meaning), axis.logarithmic ? 1.0 : axis.bounds.lowest, top * (top <= 1.0 ? 1.04 : 1.0), axis.logarithmic};
-    Plot plot("curves", ImVec2(ImGui::GetContentRegionAvail().x, 17.0f * text), {"wavelength [um]", span.low_um, span.high_um, span.high_um / span.low_um > 8.0}, y);
+    Plot plot("curves", ImVec2(ImGui::GetContentRegionAvail().x, 17.0f * text),
+              {"wavelength [um]", span.low_um, span.high_um, span.high_um / span.low_um > 8.0}, y);
     state.marks.put("plot", plot.low(), plot.high());
-    state.marks.surfaces["plot"] = [low = plot.low(), high = plot.high(), x = PlotAxis{"", span.low_um, span.high_um, span.high_um / span.low_um > 8.0}, y](double a, double b) {
-      const auto part = [](const PlotAxis& of, double v) { return of.isLog ? std::log(v / of.low) / std::log(of.high / of.low) : (v - of.low) / (of.high - of.low); };
+    state.marks.surfaces["plot"] = [low = plot.low(), high = plot.high(), x = PlotAxis{"", span.low_um, span.high_um, span.high_um / span.low_um > 8.0}, y](
+                                       double a, double b) {
+      const auto part = [](const PlotAxis& of, double v) {
+        return of.isLog ? std::log(v / of.low) / std::log(of.high / of.low) : (v - of.low) / (of.high - of.low);
+      };
       return ImVec2(low.x + static_cast<float>(part(x, a)) * (high.x - low.x), high.y - static_cast<float>(part(y, b)) * (high.y - low.y));
     };
     std::vector<std::pair<std::string, ImU32>> names;
@@ -280,7 +288,8 @@ class MaterialPanel final : public Panel {
     state.marks.item("roughness");
     grouped();
     if (substances_.empty()) substances_ = librarySubstances(findLibraries());
-    if (const int k = choose(state.marks, "substrate", f.substrate, substances_, 11.0f * text); k >= 0) f.substrate = substances_[static_cast<std::size_t>(k)], changed = true;
+    if (const int k = choose(state.marks, "substrate", f.substrate, substances_, 11.0f * text); k >= 0)
+      f.substrate = substances_[static_cast<std::size_t>(k)], changed = true;
     ImGui::SameLine();
     ImGui::TextUnformatted("substrate");
     f.thickness_um = 1e-3 * static_cast<double>(nm), f.roughness = static_cast<double>(rough);
@@ -324,7 +333,7 @@ class MaterialPanel final : public Panel {
   std::size_t span_ = 0;
   std::vector<std::string> libraryNames_, substances_;
   std::string problem_, file_;
-  SphereView sphere_;
+  SphereTiles sphere_;
 };
 
 }  // namespace

@@ -25,6 +25,8 @@ class Panel {
 std::unique_ptr<Panel> makeProbePanel();
 std::unique_ptr<Panel> makeScenePanel();
 std::unique_ptr<Panel> makeDialPanel();
+/// `asked`: a material's name or file to begin with; empty: none.
+std::unique_ptr<Panel> makeMaterialPanel(const std::string& asked);
 
 /// Pictures of the layers shown, with overlays and tools, in what is left of the window.
 class PicturesPanel {

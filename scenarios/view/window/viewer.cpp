@@ -120,7 +120,9 @@ Viewer::Viewer(GlfwWindow& window, const ViewWish& wish)
   state_.accuracy = 0.0;
   panels_.push_back(makeProbePanel());
   panels_.push_back(makeScenePanel());
+  panels_.push_back(makeMaterialPanel(wish.material));
   panels_.push_back(makeDialPanel());
+  if (!wish.material.empty()) wantedPanel_ = 2;
   if (!wish.scenario.file.empty()) open(wish.scenario.file);
 }
 
