@@ -84,7 +84,14 @@ class MaterialPanel final : public Panel {
       problem_ = e.what();
     }
     sphere_.draw(state, *edited_, text);
+    if (state.hasScene()) sphere_.show(ImVec2(ImGui::GetContentRegionAvail().x, 26.0f * text), text);
     saving(state, text);
+  }
+
+  bool drawWide(ViewState&, ImVec2 size) override {
+    if (!edited_) return false;
+    sphere_.show(size, ImGui::GetTextLineHeight());
+    return true;
   }
 
  private:
@@ -188,9 +195,12 @@ class MaterialPanel final : public Panel {
       plot.level(1.0, colours::kBad);
       for (const CurveKind other : {CurveKind::Diffuse, CurveKind::Specular, CurveKind::Emissivity})
         if (other != kind_ && edited_->has(other) && edited_->surface().inForce(other)) names.push_back(line(plot, x, other, 1.0f));
-      std::vector<double> sum;
-      for (double w : x) sum.push_back(edited_->energyAt(w));
-      plot.line(x, sum, IM_COL32(255, 255, 255, 110), 1.0f);
+      if (sumOf_ != std::pair(edited_->revision(), span_)) {
+        sum_.clear();
+        for (double w : x) sum_.push_back(edited_->energyAt(w));
+        sumOf_ = {edited_->revision(), span_};
+      }
+      plot.line(x, sum_, IM_COL32(255, 255, 255, 110), 1.0f);
       names.emplace_back("returned in all", IM_COL32(255, 255, 255, 110));
     }
     names.push_back(line(plot, x, kind_, 2.4f));
@@ -330,6 +340,8 @@ class MaterialPanel final : public Panel {
   std::optional<std::size_t> point_;
   bool drags_ = false;
   double top_ = 1.0;
+  std::vector<double> sum_;  ///< what is returned in all, over the span
+  std::pair<unsigned long long, std::size_t> sumOf_{~0ull, 0};
   std::size_t span_ = 0;
   std::vector<std::string> libraryNames_, substances_;
   std::string problem_, file_;

@@ -14,6 +14,8 @@ class Panel {
   /// A word in the names of its widgets.
   virtual std::string name() const = 0;
   virtual void draw(ViewState& state) = 0;
+  /// Where there is no scenario, in the place of its pictures; false: nothing.
+  virtual bool drawWide(ViewState&, ImVec2) { return false; }
   /// Each frame, shown or not.
   virtual void look(ViewState&) {}
   /// Whether what scripts wait for by this word is there; nothing where it is none of its own.

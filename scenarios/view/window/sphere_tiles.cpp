@@ -37,7 +37,7 @@ struct SpherePixels {
 struct SphereResult {
   std::vector<SpherePixels> pictures;
   std::string verdict;                   ///< of two materials
-  double took_ms = 0.0, after_ms = 0.0;  ///< the drawing; from the wish on
+  double took_ms = 0.0, after_ms = 0.0;  ///< drawing the eye's first picture; from the wish on
 };
 
 /// A sphere of one material on the left half and of another on the right.
@@ -53,29 +53,38 @@ void joinHalves(std::vector<T>& left, const std::vector<T>& right) {
 /// Pictures that do not change with a material are kept from one wish to the next.
 class SphereDesk {
  public:
-  std::shared_ptr<const SphereResult> draw(const SphereWish& wish) {
+  /// `publish` gets what the eye sees, with bands as they were before, while these are drawn.
+  std::shared_ptr<const SphereResult> draw(const SphereWish& wish, const std::function<bool()>& isStale,
+                                           const std::function<void(std::shared_ptr<const SphereResult>)>& publish) {
     if (eye_.empty()) eye_ = eyeChannels(findLibraries());
-    const auto from = std::chrono::steady_clock::now();
-    auto result = std::make_shared<SphereResult>();
     prepare(wish);
+    const auto from = std::chrono::steady_clock::now();
+    const auto since = [](std::chrono::steady_clock::time_point then) {
+      return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - then).count();
+    };
+    auto result = std::make_shared<SphereResult>();
     for (std::size_t l = 0; l < wish.lights.size(); ++l) {
       SpherePixels p;
       p.title = "eye, " + wish.lights[l].name;
       p.colours = coloursOf(*eyes_[l], *wish.material);
       if (wish.beside) joinHalves(p.colours, coloursOf(*eyes_[l], *wish.beside));
       result->pictures.push_back(std::move(p));
+      if (l == 0) result->took_ms = since(from), result->after_ms = since(wish.asked);
     }
+    if (wish.beside) result->verdict = verdictOf(wish);
+    auto first = std::make_shared<SphereResult>(*result);
+    first->pictures.insert(first->pictures.end(), drawnBands_.begin(), drawnBands_.end());
+    publish(first);
+    drawnBands_.clear();
     for (std::size_t b = 0; b < bands_.size(); ++b) try {
+        if (isStale()) break;
         SpherePixels p{wish.bands[b].name + ", " + wish.lights[0].name, {}, {}, wish.bands[b].unit};
         p.values = bands_[b]->draw(*wish.material)[0];
         if (wish.beside) joinHalves(p.values, bands_[b]->draw(*wish.beside)[0]);
-        result->pictures.push_back(std::move(p));
+        drawnBands_.push_back(std::move(p));
       } catch (const UserError&) {  // no data in this band: no picture of it
       }
-    if (wish.beside) result->verdict = verdictOf(wish);
-    const auto now = std::chrono::steady_clock::now();
-    result->took_ms = std::chrono::duration<double, std::milli>(now - from).count();
-    result->after_ms = std::chrono::duration<double, std::milli>(now - wish.asked).count();
+    result->pictures.insert(result->pictures.end(), drawnBands_.begin(), drawnBands_.end());
     return result;
   }
 
@@ -86,7 +95,7 @@ class SphereDesk {
     for (const SphereChannel& c : wish.bands) key += "/" + c.name;
     if (key == key_) return;
     key_ = key;
-    eyes_.clear(), bands_.clear();
+    eyes_.clear(), bands_.clear(), drawnBands_.clear();
     SphereView view;
     view.temperature_K = wish.temperature_K;
     const glm::dvec3 direction(0.4, 0.5, 1.0);
@@ -118,6 +127,7 @@ class SphereDesk {
   }
 
   std::vector<SphereChannel> eye_;
+  std::vector<SpherePixels> drawnBands_;
   std::string key_;
   std::vector<std::unique_ptr<SpherePicture>> eyes_, bands_;
 };
@@ -140,9 +150,15 @@ struct SphereTiles::Own {
   std::shared_ptr<const SphereResult> shown;
   std::vector<std::unique_ptr<PictureTile>> tiles;
   TileZoom zoom;
-  SphereWork work{[] {
+  std::vector<std::string> libraryNames = libraryMaterials(findLibraries());
+  SphereWork work{[this] {
                     auto desk = std::make_shared<SphereDesk>();
-                    return [desk](const SphereWish& wish, const SphereWork::Stale&) { return desk->draw(wish); };
+                    return [this, desk](const SphereWish& wish, const SphereWork::Stale& isStale) {
+                      return desk->draw(wish, isStale, [this](std::shared_ptr<const SphereResult> some) {
+                        work.publish(std::move(some));
+                        GlfwWindow::wake();
+                      });
+                    };
                   },
                   [] { GlfwWindow::wake(); }};
 };
@@ -175,7 +191,7 @@ void SphereTiles::draw(ViewState& state, const EditedMaterial& edited, float tex
   if (state.hasScene())
     for (const auto& m : state.asRead->simulation.materials)
       if (!m->medium) materials.push_back(m->name);
-  for (const std::string& n : libraryMaterials(findLibraries())) materials.push_back(n);
+  materials.insert(materials.end(), o.libraryNames.begin(), o.libraryNames.end());
   if (const int k = choose(state.marks, "beside", o.besideName.empty() ? materials[0] : o.besideName, materials, 15.0f * text); k >= 0) {
     o.besideName = k == 0 ? "" : materials[static_cast<std::size_t>(k)];
     o.beside.reset();
@@ -211,40 +227,49 @@ void SphereTiles::draw(ViewState& state, const EditedMaterial& edited, float tex
     }
   }
   if (const std::string wrong = !o.problem.empty() ? o.problem : o.work.error(); !wrong.empty()) ImGui::TextWrapped("%s", wrong.c_str());
+  load(state);
+  if (!o.shown) return;
+  if (!o.shown->verdict.empty()) ImGui::TextWrapped("left and right %s", o.shown->verdict.c_str());
+  state.marks.text("verdict", o.shown->verdict);
+  state.marks.text("sphere_ms", print("%.1f", o.shown->took_ms));
+  state.marks.text("curve_to_picture_ms", print("%.1f", o.shown->after_ms));
+  ImGui::TextDisabled("%.0f ms from the curve to the first picture of %d x %d", o.shown->after_ms, kSide, kSide);
+}
+
+void SphereTiles::load(const ViewState& state) {
+  Own& o = *own_;
   const auto newest = o.work.newest();
-  if (!newest) return;
-  if (newest != o.shown) {
-    o.shown = newest;
-    o.tiles.resize(newest->pictures.size());
-    for (std::size_t k = 0; k < o.tiles.size(); ++k) {
-      if (!o.tiles[k]) o.tiles[k] = std::make_unique<PictureTile>();
-      const SpherePixels& p = newest->pictures[k];
-      if (!p.colours.empty()) {
-        o.tiles[k]->load(p.title, p.colours, kSide, kSide);
-        continue;
-      }
-      Frame frame;
-      frame.width = frame.height = kSide;
-      FrameLook look;
-      look.map = state.look.map == "auto" ? "thermal" : state.look.map;
-      const auto most = *std::max_element(p.values.begin(), p.values.end());
-      look.layers[p.title].ends = {0.0, most > 0.0f ? static_cast<double>(most) : 1.0};
-      o.tiles[k]->load(layerPicture(frame, {p.title, p.unit, p.values}, look, nullptr), kSide, kSide);
-    }
-  }
-  if (!newest->verdict.empty()) ImGui::TextWrapped("left and right %s", newest->verdict.c_str());
-  state.marks.text("verdict", newest->verdict);
-  state.marks.text("sphere_ms", print("%.1f", newest->took_ms));
-  state.marks.text("curve_to_picture_ms", print("%.1f", newest->after_ms));
-  ImGui::TextDisabled("%.0f ms from the curve to %zu pictures of %d x %d", newest->after_ms, newest->pictures.size(), kSide, kSide);
-  const float width = ImGui::GetContentRegionAvail().x, side = 0.5f * width - 0.5f * text;
-  const ImVec2 from = ImGui::GetCursorScreenPos();
-  const float cell = side * 0.86f + 1.9f * text;
+  if (!newest || newest == o.shown) return;
+  o.shown = newest;
+  o.tiles.resize(newest->pictures.size());
   for (std::size_t k = 0; k < o.tiles.size(); ++k) {
-    ImGui::SetCursorScreenPos(ImVec2(from.x + static_cast<float>(k % 2) * (side + text), from.y + static_cast<float>(k / 2) * cell));
-    o.tiles[k]->draw("sphere" + std::to_string(k), ImVec2(side, cell - 0.5f * text), o.zoom);
+    if (!o.tiles[k]) o.tiles[k] = std::make_unique<PictureTile>();
+    const SpherePixels& p = newest->pictures[k];
+    if (!p.colours.empty()) {
+      o.tiles[k]->load(p.title, p.colours, kSide, kSide);
+      continue;
+    }
+    Frame frame;
+    frame.width = frame.height = kSide;
+    FrameLook look;
+    look.map = state.look.map == "auto" ? "thermal" : state.look.map;
+    const auto most = *std::max_element(p.values.begin(), p.values.end());
+    look.layers[p.title].ends = {0.0, most > 0.0f ? static_cast<double>(most) : 1.0};
+    o.tiles[k]->load(layerPicture(frame, {p.title, p.unit, p.values}, look, nullptr), kSide, kSide);
   }
-  ImGui::SetCursorScreenPos(ImVec2(from.x, from.y + static_cast<float>((o.tiles.size() + 1) / 2) * cell));
+}
+
+void SphereTiles::show(ImVec2 size, float text) {
+  Own& o = *own_;
+  if (o.tiles.empty()) return;
+  const int columns = size.x > 1.5f * size.y ? 3 : 2, rows = (static_cast<int>(o.tiles.size()) + columns - 1) / columns;
+  const ImVec2 from = ImGui::GetCursorScreenPos(), cell(size.x / static_cast<float>(columns), size.y / static_cast<float>(rows));
+  for (std::size_t k = 0; k < o.tiles.size(); ++k) {
+    const int column = static_cast<int>(k) % columns, row = static_cast<int>(k) / columns;
+    ImGui::SetCursorScreenPos(ImVec2(from.x + static_cast<float>(column) * cell.x, from.y + static_cast<float>(row) * cell.y));
+    o.tiles[k]->draw("sphere" + std::to_string(k), ImVec2(cell.x - text, cell.y - 0.6f * text), o.zoom);
+  }
+  ImGui::SetCursorScreenPos(ImVec2(from.x, from.y + size.y));
   ImGui::Dummy(ImVec2(1.0f, 1.0f));
 }
 

@@ -17,10 +17,14 @@ class SphereTiles {
  public:
   SphereTiles();
   ~SphereTiles();
+  /// What is chosen of them: lights, a second material; asks for pictures where something has changed.
   void draw(ViewState& state, const EditedMaterial& edited, float text);
+  /// The pictures.
+  void show(ImVec2 size, float text);
   bool isDone() const;
 
  private:
+  void load(const ViewState& state);
   struct Own;
   std::unique_ptr<Own> own_;
 };

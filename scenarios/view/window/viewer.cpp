@@ -539,7 +539,15 @@ void Viewer::frame() {
                ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings);
   topBar();
   const float middle = std::max(ImGui::GetContentRegionAvail().y - bottom, 1.0f);
-  pictures_.draw(state_, ImVec2(std::max(ImGui::GetContentRegionAvail().x - side, 1.0f), middle));
+  const ImVec2 wide(std::max(ImGui::GetContentRegionAvail().x - side, 1.0f), middle);
+  if (state_.wish.scenario.file.empty()) {
+    ImGui::BeginChild("wide", wide, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+    for (auto& panel : panels_)
+      if (panel->drawWide(state_, ImGui::GetContentRegionAvail())) break;
+    ImGui::EndChild();
+  } else {
+    pictures_.draw(state_, wide);
+  }
   ImGui::SameLine();
   ImGui::BeginChild("side", ImVec2(0.0f, middle));
   if (ImGui::BeginTabBar("panels")) {
