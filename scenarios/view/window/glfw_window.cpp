@@ -120,9 +120,16 @@ void GlfwWindow::onKey(int key, bool down, int mods) {
 
 void GlfwWindow::onChar(unsigned code) { own_->heard = true, ImGui_ImplGlfw_CharCallback(own_->window, code); }
 
-bool GlfwWindow::beginFrame(double wait_s) {
+bool GlfwWindow::listen(double wait_s) {
   if (wait_s > 0.0) glfwWaitEventsTimeout(wait_s);
   else glfwPollEvents();
+  constexpr double kLately_s = 0.5;
+  const double now_s = glfwGetTime();
+  if (std::exchange(own_->heard, false) || own_->isDown[0] || own_->isDown[1]) own_->heard_s = now_s;
+  return now_s - own_->heard_s < kLately_s;
+}
+
+void GlfwWindow::beginFrame() {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
   ImGuiIO& io = ImGui::GetIO();
@@ -130,10 +137,6 @@ bool GlfwWindow::beginFrame(double wait_s) {
   for (std::size_t b = 0; b < 3; ++b) io.MouseDown[b] = own_->isDown[b] || own_->wasPressed[b];
   own_->wasPressed = {};
   ImGui::NewFrame();
-  constexpr double kLately_s = 0.7;
-  const double now_s = glfwGetTime();
-  if (std::exchange(own_->heard, false) || own_->isDown[0] || own_->isDown[1]) own_->heard_s = now_s;
-  return now_s - own_->heard_s < kLately_s;
 }
 
 void GlfwWindow::endFrame() {

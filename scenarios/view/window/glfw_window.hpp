@@ -25,7 +25,8 @@ class GlfwWindow {
   GlfwWindow& operator=(const GlfwWindow&) = delete;
 
   /// Takes what mouse and keys have done, waiting for it at most so long. Whether they did anything lately.
-  bool beginFrame(double wait_s);
+  bool listen(double wait_s);
+  void beginFrame();
   void endFrame();
   /// Throws std::runtime_error where the display is gone.
   bool isClosed();

@@ -128,7 +128,6 @@ void PictureTile::draw(const std::string& id, ImVec2 size, TileZoom& zoom) {
     place();
   }
   list->PushClipRect(low_, high_, true);
-  list->AddRectFilled(low_, high_, colours::kPlot);
   if (width_ > 0) list->AddImage(asId(texture_), at(0, 0), at(width_, height_));
   list->PopClipRect();
   if (!hasBar_) return;

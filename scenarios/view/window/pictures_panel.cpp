@@ -141,7 +141,7 @@ void PicturesPanel::use(ViewState& state, PictureTile& tile) {
 }
 
 void PicturesPanel::draw(ViewState& state, ImVec2 size) {
-  ImGui::BeginChild("pictures", size, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  ImGui::BeginChild("pictures", size, false, ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   const float text = ImGui::GetTextLineHeight();
   if (!state.picture) {
     ImGui::SetCursorPos(ImVec2(2.0f * text, 2.0f * text));

@@ -41,6 +41,7 @@ struct ViewState {
   MakerStatus status;
   bool isDone = false;
   double pictures_s = 0.0;  ///< pictures a second, lately
+  double window_ms = 0.0;  ///< of the last frame of the window
   double window_s = 0.0;    ///< frames of the window a second, lately
   std::string problem;      ///< of the file that was saved
   std::string message;      ///< of what was done last

@@ -20,7 +20,7 @@ namespace {
 /// How often saved files are looked for.
 constexpr double kFileLook_s = 0.25;
 /// From a frame of the window to the next: where somebody does something or pictures change, and where nothing does; drawing it takes from what is drawn in it.
-constexpr double kBusy_s = 1.0 / 32.0, kIdle_s = 1.0 / 6.0;
+constexpr double kBusy_s = 1.0 / 32.0, kIdle_s = 1.0 / 6.0, kLeast_s = 1.0 / 120.0;
 constexpr double kMessage_s = 6.0;
 
 const std::vector<std::pair<std::string, double>>& speeds() {
@@ -426,7 +426,7 @@ void Viewer::lookBar() {
 }
 
 void Viewer::timeline(float height) {
-  ImGui::BeginChild("timeline", ImVec2(0.0f, height), false, ImGuiWindowFlags_NoScrollbar);
+  ImGui::BeginChild("timeline", ImVec2(0.0f, height), false, ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoScrollbar);
   if (state_.hasScene()) {
     const TimeAxis& time = state_.scene->simulation.time;
     const float text = ImGui::GetTextLineHeight();
@@ -488,6 +488,7 @@ void Viewer::statusLine() {
   state_.marks.text("first_picture_s", print("%.2f", firstPicture_s_));
   state_.marks.text("first_as_asked_s", print("%.2f", firstAsked_s_));
   state_.marks.text("message", state_.message);
+  state_.marks.text("window_ms", print("%.1f", state_.window_ms));
   state_.marks.text("window_s", print("%.1f", state_.window_s));
   state_.marks.text("pictures_s", print("%.1f", state_.pictures_s));
 }
@@ -536,12 +537,13 @@ void Viewer::frame() {
   ImGui::SetNextWindowPos(ImVec2(0.0f, 0.0f));
   ImGui::SetNextWindowSize(size);
   ImGui::Begin("pitviper", nullptr,
-               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings);
+               ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoBringToFrontOnFocus |
+                   ImGuiWindowFlags_NoSavedSettings);
   topBar();
   const float middle = std::max(ImGui::GetContentRegionAvail().y - bottom, 1.0f);
   const ImVec2 wide(std::max(ImGui::GetContentRegionAvail().x - side, 1.0f), middle);
   if (state_.wish.scenario.file.empty()) {
-    ImGui::BeginChild("wide", wide, false, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+    ImGui::BeginChild("wide", wide, false, ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
     for (auto& panel : panels_)
       if (panel->drawWide(state_, ImGui::GetContentRegionAvail())) break;
     ImGui::EndChild();
@@ -556,7 +558,7 @@ void Viewer::frame() {
       const bool open = ImGui::BeginTabItem(panel.title().c_str(), nullptr, wantedPanel_ == static_cast<int>(k) ? ImGuiTabItemFlags_SetSelected : 0);
       state_.marks.item("tab:" + panel.name());
       if (!open) continue;
-      ImGui::BeginChild(panel.name().c_str(), ImVec2(0.0f, 0.0f));
+      ImGui::BeginChild(panel.name().c_str(), ImVec2(0.0f, 0.0f), false, ImGuiWindowFlags_NoBackground);
       panel.draw(state_);
       ImGui::EndChild();
       ImGui::EndTabItem();
@@ -583,30 +585,37 @@ void Viewer::run() {
                                        [this](const std::string& file) { writePicture(file); }});
   const auto start = std::chrono::steady_clock::now();
   const auto elapsed = [start] { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); };
-  double last_s = 0.0;
-  bool isBusy = true;
+  double last_s = 0.0, drawn_s = -1.0;
+  std::uint64_t drawnPicture = 0;
+  bool isDrawn = true;  ///< a script acts once a frame
   while (!window_.isClosed()) {
-    if (script && !script->step(now_s_)) return;
-    // Waits for something to happen; then the rest of the shorter time.
-    const bool mayRest = !isBusy && (!script || script->isWaiting());
-    const std::uint64_t before = state_.picture ? state_.picture->number : 0;
-    isBusy = window_.beginFrame(mayRest ? std::max(0.0, last_s + kIdle_s - elapsed()) : 0.0) || state_.isPlaying;
-    if (const double left_s = last_s + kBusy_s - elapsed(); left_s > 0.0) std::this_thread::sleep_for(std::chrono::duration<double>(left_s));
+    const bool acts = script && !script->isWaiting();
+    if (isDrawn && script && !script->step(now_s_)) return;
+    isDrawn = false;
+    const bool isBusy = window_.listen(acts ? 0.0 : std::max(0.0, last_s + kBusy_s - elapsed())) || acts;
+    // A mouse that moves says so a thousand times a second.
+    if (const double left_s = last_s + kLeast_s - elapsed(); left_s > 0.0) std::this_thread::sleep_for(std::chrono::duration<double>(left_s));
     now_s_ = elapsed();
     takeLoaded();
     watchFile(now_s_);
     tick(now_s_ - last_s);
     ask();
-    isBusy |= state_.picture && state_.picture->number != before;
+    last_s = now_s_;
+    // Where nothing changes the window is drawn seldom: what draws it is what draws the scene, where there is no GPU.
+    const std::uint64_t picture = state_.picture ? state_.picture->number : 0;
+    if (now_s_ - drawn_s < (isBusy ? kBusy_s - kLeast_s : picture != drawnPicture ? 0.0 : kIdle_s)) continue;
+    drawnPicture = picture, drawn_s = now_s_;
+    window_.beginFrame();
     frame();
     window_.endFrame();
+    isDrawn = true;
     if (std::exchange(shoots_, false)) {
       const std::string file = "pitviper_view.png";
       writePng(file, window_.pixels());
       window_.keepPixels(false);
       state_.say("written: " + file);
     }
-    last_s = now_s_;
+    state_.window_ms = 1e3 * (elapsed() - now_s_);
     ++countedFrames_;
     if (now_s_ - countedFrom_s_ >= 1.0) {
       const std::uint64_t pictures = state_.picture ? state_.picture->number : 0;
