@@ -38,6 +38,8 @@ const char* nameOf(Tier tier) {
       return "edited";
     case Tier::Asked:
       return "as asked";
+    case Tier::File:
+      return "file";
   }
   return "";
 }

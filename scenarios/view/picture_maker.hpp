@@ -30,7 +30,7 @@ struct PictureWish {
 
 /// What a picture was drawn by: SketchTier, no plan; DraftTier, one of kDraft; Edited, the plan of the scene before an edit, not held against this one; Asked,
 /// as asked.
-enum class Tier { Sketch, Draft, Edited, Asked };
+enum class Tier { Sketch, Draft, Edited, Asked, File };
 const char* nameOf(Tier tier);
 
 struct ShownPicture {

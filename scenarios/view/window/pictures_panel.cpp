@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/view/frame_files.hpp"
 #include "scenarios/view/window/panels.hpp"
 #include "scenarios/view/window/style.hpp"
 #include "sim/parameters/print.hpp"
@@ -50,12 +51,14 @@ void PicturesPanel::overlay(ViewState& state, const PictureTile& tile) {
   const int target = state.hasScene() ? state.cameraShown().mount.lookAtEntity : -1;
   const float text = ImGui::GetTextLineHeight();
   for (const EntityShape& s : state.shapes.shapes) {
-    if (!state.hasScene() || s.entity >= static_cast<int>(state.scene->simulation.entities.size())) continue;
+    const bool isKnown = state.hasScene() && s.entity < static_cast<int>(state.scene->simulation.entities.size());
+    const std::string name =
+        isKnown ? state.scene->simulation.entities[static_cast<std::size_t>(s.entity)].name : bodyNamed(state.picture->frame, s.entity + 1);
     const ImVec2 low = tile.at(s.left, s.top), high = tile.at(s.right, s.bottom);
     const ImVec2 a(low.x - 3.0f, low.y - 3.0f), b(high.x + 3.0f, high.y + 3.0f);
     if (o.boxes) {
       list->AddRect(a, b, colours::kGood, 0.0f, 0, 1.2f);
-      std::string label = o.names ? state.scene->simulation.entities[static_cast<std::size_t>(s.entity)].name : "";
+      std::string label = o.names ? name : "";
       if (o.ranges) label += (label.empty() ? "" : "  ") + (s.nearest_m < 1e4 ? print("%.0f m", s.nearest_m) : print("%.2f km", 1e-3 * s.nearest_m));
       const ImVec2 at(std::max(a.x, tile.low().x + 2.0f), std::max(a.y - 1.15f * text, tile.low().y + 2.0f));
       list->AddText(ImVec2(at.x + 1.0f, at.y + 1.0f), IM_COL32(0, 0, 0, 220), label.c_str());

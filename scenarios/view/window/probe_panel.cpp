@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "scenarios/commands/commands.hpp"
+#include "scenarios/view/frame_files.hpp"
 #include "scenarios/view/newest_work.hpp"
 #include "scenarios/view/pixel_probe.hpp"
 #include "scenarios/view/window/glfw_window.hpp"
@@ -122,7 +123,7 @@ class ProbePanel final : public Panel {
         state.marks.text("probe.material", sim.materials[static_cast<std::size_t>(m)]->name);
       }
     } else {
-      row("body", state.hasScene() ? "none: sky or ground" : "");
+      row("body", state.hasScene() ? "none: sky or ground" : bodyNamed(f, entity + 1));
     }
     const double range_m = valueOf("truth.range");
     if (range_m > 0.0) row("temperature, range", print("%.1f K, %.1f m", valueOf("truth.temperature"), range_m));

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenarios/view/frame_files.hpp"
 #include "scenarios/view/window/panels.hpp"
 #include "scenarios/view/window/widgets.hpp"
 #include "sim/parameters/print.hpp"
@@ -18,9 +19,20 @@ class ScenePanel final : public Panel {
   std::string name() const override { return "scene"; }
 
   void draw(ViewState& state) override {
-    if (!state.hasScene()) return;
-    const Simulation& sim = state.scene->simulation;
     const float text = ImGui::GetTextLineHeight();
+    if (!state.hasScene()) {
+      if (!state.picture) return;
+      row("size", print("%d x %d", state.picture->frame.width, state.picture->frame.height));
+      auto words = wordsOf(state.picture->frame);
+      std::stable_partition(words.begin(), words.end(), [](const auto& w) { return w.first.rfind("less ", 0) == 0; });
+      for (const auto& [name, value] : words) {
+        ImGui::TextDisabled("%s", name.c_str());
+        ImGui::TextWrapped("%s", value.c_str());
+        state.marks.text("attribute." + name, value);
+      }
+      return;
+    }
+    const Simulation& sim = state.scene->simulation;
     ImGui::TextUnformatted(sim.name.c_str());
     camera(state, text);
     if (ImGui::CollapsingHeader("temperatures")) {

@@ -1,6 +1,7 @@
 #pragma once
 // What a window shows and what its panels share.
 #include <deque>
+#include <filesystem>
 #include <glm/glm.hpp>
 #include <map>
 #include <optional>
@@ -41,11 +42,13 @@ struct ViewState {
   MakerStatus status;
   bool isDone = false;
   double pictures_s = 0.0;  ///< pictures a second, lately
-  double window_ms = 0.0;  ///< of the last frame of the window
+  double window_ms = 0.0;   ///< of the last frame of the window
   double window_s = 0.0;    ///< frames of the window a second, lately
   std::string problem;      ///< of the file that was saved
   std::string message;      ///< of what was done last
   double messageUntil_s = 0.0;
+  std::vector<std::filesystem::path> files;  ///< frames, where no scenario is shown
+  std::size_t file = 0;
   // How it is shown.
   FrameLook look;
   std::vector<std::string> shown;  ///< layers

@@ -10,6 +10,7 @@
 #include "scenarios/view/window/style.hpp"
 #include "scenarios/view/window/widgets.hpp"
 #include "sim/frame/frame_picture.hpp"
+#include "sim/frame/read_frame.hpp"
 #include "sim/image/colour_map.hpp"
 #include "sim/image/png.hpp"
 #include "sim/parameters/print.hpp"
@@ -38,6 +39,8 @@ std::string tierText(const ShownPicture& p) {
       return "DRAFT: " + most;
     case Tier::Edited:
       return "EDITED: by the plan before; whether it holds is being found";
+    case Tier::File:
+      return p.frame.camera.empty() ? "A FILE" : "A FILE of camera " + p.frame.camera;
     case Tier::Asked:
       return p.accuracy > 0.0 ? print("AS ASKED (%.3g %%): ", 100.0 * p.accuracy) + most : "AS SAMPLED: no accuracy is asked for";
   }
@@ -115,7 +118,9 @@ Viewer::Viewer(GlfwWindow& window, const ViewWish& wish)
               return std::shared_ptr<const Loaded>(std::move(loaded));
             };
           },
-          [] { GlfwWindow::wake(); }) {
+          [] { GlfwWindow::wake(); }),
+      reader_([] { return [](const FrameFileWish& file, const NewestWork<FrameFileWish, ShownPicture>::Stale&) { return readShownFrame(file); }; },
+              [] { GlfwWindow::wake(); }) {
   state_.wish = wish;
   state_.accuracy = 0.0;
   panels_.push_back(makeProbePanel());
@@ -133,7 +138,42 @@ void Viewer::open(const std::string& file) {
   state_.wish.scenario.file = file;
   stamps_.clear();
   window_.setTitle(file + " - pitviper");
+  state_.files.clear();
+  state_.file = 0;
+  askedFile_.clear();
+  if (namesFrames(file)) {
+    state_.asRead = state_.scene = nullptr;
+    state_.picture.reset();
+    state_.shown.clear();
+    state_.files = framesIn(file);
+    return;
+  }
   loader_.want(state_.wish.scenario);
+}
+
+/// The frame of a file is asked for, and taken when it has been read.
+void Viewer::askFile() {
+  const std::filesystem::path& file = state_.files[state_.file];
+  if (file != askedFile_) {
+    askedFile_ = file;
+    reader_.want({file, state_.wish.beside, ++filesAsked_});
+  }
+  state_.status = {};
+  state_.status.error = reader_.error();
+  state_.isDone = !reader_.isBusy();
+  const auto newest = reader_.newest();
+  if (!newest || newest == state_.picture) return;
+  state_.picture = newest;
+  if (!state_.shown.empty() && layerNamed(newest->frame, state_.shown.front())) return;
+  state_.shown.clear();
+  // With another beside it: what it has more, under what it has.
+  const bool isCompared = !state_.wish.beside.empty();
+  for (const FrameLayer* l : shownLayers(newest->frame, {}))
+    if (l->name.rfind("less ", 0) != 0 && state_.shown.size() < (isCompared ? 2 : 4)) state_.shown.push_back(l->name);
+  const std::vector<std::string> own = state_.shown;
+  for (const std::string& name : own)
+    for (const FrameLayer& l : newest->frame.layers)
+      if (l.name.rfind("less ", 0) == 0 && l.name.ends_with(": " + name)) state_.shown.push_back(l.name);
 }
 
 void Viewer::takeLoaded() {
@@ -180,7 +220,7 @@ void Viewer::chooseLayers() {
 
 /// A scenario that was saved, or anything written in YAML beside it, is read again.
 void Viewer::watchFile(double now_s) {
-  if (now_s < nextLook_s_ || state_.wish.scenario.file.empty()) return;
+  if (now_s < nextLook_s_ || state_.wish.scenario.file.empty() || !state_.files.empty()) return;
   nextLook_s_ = now_s + kFileLook_s;
   const std::filesystem::path file = state_.wish.scenario.file;
   std::map<std::filesystem::path, std::filesystem::file_time_type> now;
@@ -198,11 +238,14 @@ void Viewer::watchFile(double now_s) {
 
 /// The drawing thread is asked for what is to be seen now.
 void Viewer::ask() {
+  if (!state_.files.empty()) return askFile();
   if (!state_.hasScene()) return;
   if (askedFrom_ != state_.scene || askedAccuracy_ != state_.accuracy) {
     askedScene_ = state_.accuracy > 0.0 ? withAccuracy(*state_.scene, state_.accuracy) : state_.scene;
     askedFrom_ = state_.scene;
     askedAccuracy_ = state_.accuracy;
+    askedAt_s_ = now_s_;
+    toPicture_s_ = toAsked_s_ = -1.0;
   }
   maker_->want({askedScene_, state_.camera, state_.time_s, state_.hands, true});
   state_.status = maker_->status();
@@ -213,6 +256,11 @@ void Viewer::ask() {
 }
 
 void Viewer::step(int frames) {
+  if (!state_.files.empty()) {
+    const int count = static_cast<int>(state_.files.size()), next = static_cast<int>(state_.file) + frames;
+    state_.file = static_cast<std::size_t>(state_.loops && state_.isPlaying ? ((next % count) + count) % count : std::clamp(next, 0, count - 1));
+    return;
+  }
   if (!state_.hasScene()) return;
   const TimeAxis& time = state_.scene->simulation.time;
   int frame = static_cast<int>(std::lround((state_.time_s - time.start_s) / time.step_s)) + frames;
@@ -221,6 +269,7 @@ void Viewer::step(int frames) {
 }
 
 void Viewer::tick(double seconds) {
+  if (!state_.files.empty() && state_.isPlaying && state_.isDone) step(1);
   if (!state_.hasScene() || !state_.isPlaying) return;
   const TimeAxis& time = state_.scene->simulation.time;
   if (state_.speed <= 0.0) {
@@ -239,6 +288,7 @@ bool Viewer::isReached(const std::string& what, const Location& where) const {
   const auto at = [this](Tier least) { return state_.picture && static_cast<int>(state_.picture->tier) >= static_cast<int>(least); };
   if (what == "done")
     return (state_.isDone && state_.picture && !loader_.isBusy()) || (!state_.problem.empty() && !loader_.isBusy()) || !state_.status.error.empty();
+  if (what == "done" && !state_.files.empty()) return state_.isDone && askedFile_ == state_.files[state_.file];
   if (what == "picture") return state_.picture != nullptr;
   if (what == "sketch") return at(Tier::Sketch);
   if (what == "draft") return at(Tier::Draft);
@@ -427,6 +477,7 @@ void Viewer::lookBar() {
 
 void Viewer::timeline(float height) {
   ImGui::BeginChild("timeline", ImVec2(0.0f, height), false, ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoScrollbar);
+  if (!state_.files.empty()) fileLine();
   if (state_.hasScene()) {
     const TimeAxis& time = state_.scene->simulation.time;
     const float text = ImGui::GetTextLineHeight();
@@ -457,12 +508,27 @@ void Viewer::timeline(float height) {
   ImGui::EndChild();
 }
 
+void Viewer::fileLine() {
+  if (button(state_.marks, "play", state_.isPlaying ? "\u2016" : "\u25b6", "space")) state_.isPlaying = !state_.isPlaying;
+  ImGui::SameLine();
+  toggle(state_.marks, "loop", "loop", state_.loops);
+  ImGui::SameLine();
+  int file = static_cast<int>(state_.file);
+  ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x, 4.0f * ImGui::GetTextLineHeight()));
+  const std::string name = state_.files[state_.file].filename().string();
+  if (ImGui::SliderInt("##file", &file, 0, std::max(static_cast<int>(state_.files.size()) - 1, 1),
+                       (name + print(", %d of %zu", file + 1, state_.files.size())).c_str()))
+    state_.file = static_cast<std::size_t>(std::clamp(file, 0, static_cast<int>(state_.files.size()) - 1));
+  state_.marks.item("time");
+  state_.marks.text("file", name);
+}
+
 void Viewer::statusLine() {
   std::string line;
   if (state_.picture) {
     const ShownPicture& p = *state_.picture;
     line = tierText(p);
-    const ImVec4 colour = p.tier == Tier::Asked ? ImVec4(0.43f, 0.82f, 0.59f, 1.0f) : ImVec4(0.94f, 0.69f, 0.25f, 1.0f);
+    const ImVec4 colour = p.tier >= Tier::Asked ? ImVec4(0.43f, 0.82f, 0.59f, 1.0f) : ImVec4(0.94f, 0.69f, 0.25f, 1.0f);
     ImGui::TextColored(colour, "%s", line.c_str());
     state_.marks.text("tier", nameOf(p.tier));
     state_.marks.text("status", line);
@@ -470,7 +536,7 @@ void Viewer::statusLine() {
     state_.marks.text("groups", std::to_string(p.groups));
     state_.marks.text("draw_ms", print("%.3g", p.draw_ms));
     ImGui::SameLine();
-    ImGui::TextDisabled("%d groups of wavelengths, %.0f ms a picture", p.groups, p.draw_ms);
+    if (p.tier != Tier::File) ImGui::TextDisabled("%d groups of wavelengths, %.0f ms a picture", p.groups, p.draw_ms);
   }
   if (!state_.status.doing.empty()) {
     ImGui::SameLine();
@@ -485,6 +551,12 @@ void Viewer::statusLine() {
   }
   if (state_.picture && firstPicture_s_ < 0.0) firstPicture_s_ = now_s_;
   if (state_.picture && state_.picture->tier == Tier::Asked && firstAsked_s_ < 0.0) firstAsked_s_ = now_s_;
+  if (state_.picture && state_.picture->wish.scene == askedScene_) {
+    if (toPicture_s_ < 0.0) toPicture_s_ = now_s_ - askedAt_s_;
+    if (toAsked_s_ < 0.0 && state_.picture->tier == Tier::Asked) toAsked_s_ = now_s_ - askedAt_s_;
+  }
+  state_.marks.text("scene_to_picture_s", print("%.3f", toPicture_s_));
+  state_.marks.text("scene_to_as_asked_s", print("%.3f", toAsked_s_));
   state_.marks.text("first_picture_s", print("%.2f", firstPicture_s_));
   state_.marks.text("first_as_asked_s", print("%.2f", firstAsked_s_));
   state_.marks.text("message", state_.message);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 
+#include "scenarios/view/frame_files.hpp"
 #include "scenarios/view/newest_work.hpp"
 #include "scenarios/view/window/glfw_window.hpp"
 #include "scenarios/view/window/panels.hpp"
@@ -27,6 +28,8 @@ class Viewer {
     std::string file;
   };
   void open(const std::string& file);
+  void askFile();
+  void fileLine();
   void takeLoaded();
   void watchFile(double now_s);
   void ask();
@@ -49,10 +52,13 @@ class Viewer {
   std::unique_ptr<PictureMaker> maker_;
   NewestWork<ScenarioWish, Loaded> loader_;
   std::shared_ptr<const Loaded> loaded_;
+  NewestWork<FrameFileWish, ShownPicture> reader_;  ///< of frames
+  std::uint64_t filesAsked_ = 0;
+  std::filesystem::path askedFile_;
   std::vector<std::unique_ptr<Panel>> panels_;
   PicturesPanel pictures_;
   std::map<std::filesystem::path, std::filesystem::file_time_type> stamps_;
-  double nextLook_s_ = 0.0, now_s_ = 0.0, firstPicture_s_ = -1.0, firstAsked_s_ = -1.0;
+  double nextLook_s_ = 0.0, now_s_ = 0.0, firstPicture_s_ = -1.0, firstAsked_s_ = -1.0, askedAt_s_ = 0.0, toPicture_s_ = -1.0, toAsked_s_ = -1.0;
   std::uint64_t countedPicture_ = 0;
   double countedFrom_s_ = 0.0;
   int countedFrames_ = 0;
