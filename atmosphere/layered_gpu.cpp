@@ -200,6 +200,10 @@ void LayeredOnGpu::upload(const Rows& below, const Rows& above) {
   block_.upload(block);
 }
 
+void LayeredOnGpu::takeTables(AirOnGpu& other) {
+  if (auto* same = dynamic_cast<LayeredOnGpu*>(&other); same && same->perChannel_ == perChannel_) kept_ = std::move(same->kept_);
+}
+
 void LayeredOnGpu::bind() const {
   block_.bindUniform(3);
   coefficients_.bind();

@@ -22,6 +22,7 @@ class LayeredOnGpu final : public AirOnGpu {
   void begin() override;
   void update(const View& view, const WorldState& state) override;
   void bind() const override;
+  void takeTables(AirOnGpu& other) override;
 
  private:
   using RowKey = std::pair<long long, long long>;  ///< azimuth (across), elevation (sine)

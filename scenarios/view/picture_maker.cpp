@@ -8,6 +8,7 @@
 #include <cmath>
 #include <list>
 
+#include "scenarios/view/plan_beside.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/run/camera_line.hpp"
 #include "sim/run/drawings_beside.hpp"
@@ -23,6 +24,15 @@ constexpr int kBehindWindow = 5;
 constexpr std::chrono::milliseconds kLook{20};
 
 double secondsSince(Clock::time_point from) { return std::chrono::duration<double>(Clock::now() - from).count(); }
+
+/// Curves are dragged a step after another: only what comes to rest is planned.
+constexpr std::chrono::milliseconds kQuiet{250};
+
+/// Whether what has been found of a scene's air holds for another that was edited from it.
+bool sameAir(const Simulation& a, const Simulation& b) {
+  return a.air == b.air && a.surroundings == b.surroundings && a.ground.has_value() == b.ground.has_value() &&
+         (!a.ground || &a.materialOf(*a.ground) == &b.materialOf(*b.ground));
+}
 
 int frameAt(const TimeAxis& time, double time_s) { return std::max(0, static_cast<int>(std::lround((time_s - time.start_s) / time.step_s))); }
 
@@ -61,12 +71,17 @@ struct PictureMaker::Desk {
   std::unique_ptr<CameraLine> line;
   Tier tier = Tier::Sketch;
   int lastFrame = -1;
+  std::optional<std::vector<double>> held;  ///< what the plan at hand loses, of an edited scene for which it holds
+  Clock::time_point changed;
   bool isKnown = false;  ///< the plan of what is to be drawn next needs not be made
   /// What is made beside, and what is left to end by itself; each keeps the scene that it reads.
   struct Beside {
     ViewedScenePointer scene;
     Tier tier;
-    std::unique_ptr<DrawingsBeside> made;
+    std::unique_ptr<DrawingsBeside> made;  ///< or
+    std::unique_ptr<PlanBeside> plan;
+    bool isReady() const { return plan ? plan->isReady() : made->isReady(); }
+    double share() const { return plan ? plan->share() : made->share(); }
   };
   std::optional<Beside> beside;
   struct Left {
@@ -106,21 +121,25 @@ struct PictureMaker::Desk {
     leave();
     isKnown = false;
     scene = wish.scene;
+    changed = Clock::now();
     camera = wish.camera;
     lastFrame = -1;
     const Camera& c = cameraOf(*scene);
     if (sameAsked && line && (tier == Tier::Asked || tier == Tier::Edited)) {
       // The plan before the edit draws the edited scene at once; whether it still holds is found beside.
-      Plan plan = line->renderer().plan();
-      line.reset();
-      drawnScene = scene;
-      line = std::make_unique<CameraLine>(scene->simulation, c, library,
-                                          std::make_unique<CameraDrawing>(scene->simulation, c, std::move(plan), library, bodies), true);
+      const Plan plan = line->renderer().plan();
+      held.reset();
+      const ViewedScenePointer before = std::exchange(drawnScene, scene);
+      auto edited =
+          std::make_unique<CameraLine>(scene->simulation, c, library, std::make_unique<CameraDrawing>(scene->simulation, c, plan, library, bodies), true);
+      if (sameAir(before->simulation, scene->simulation)) edited->renderer().takeAir(line->renderer());
+      line = std::move(edited);
       tier = Tier::Edited;
       return;
     }
     line.reset();
     if (sameAsked && tier == Tier::Asked && !hasDraft(scene->simulation, c)) return drawAsAsked();
+    held.reset();
     drawnScene = sketchOf(*scene);
     takeBodies(*drawnScene);
     const Camera& sketched = cameraOf(*drawnScene);
@@ -131,10 +150,25 @@ struct PictureMaker::Desk {
   }
 
   void planBeside(Tier next) {
-    beside = Beside{scene, next, nullptr};
+    beside = Beside{scene, next, nullptr, nullptr};
+    if (tier == Tier::Edited) {
+      beside->plan = std::make_unique<PlanBeside>(scene, camera, line->renderer().plan());
+      return;
+    }
     beside->made =
         std::make_unique<DrawingsBeside>(scene->simulation, library, std::vector<std::size_t>{camera},
                                          next == Tier::Draft ? DrawingsBeside::Which::Draft : DrawingsBeside::Which::First, scene->simulation.time.start_s);
+  }
+
+  /// Of an edited scene: what draws it is as asked already where its plan still holds.
+  void takePlan(Plan plan) {
+    tier = Tier::Asked;
+    held = plan.predictedError;
+    if (plan.fingerprint == line->renderer().plan().fingerprint) return;
+    held.reset();
+    auto asked = std::make_unique<CameraDrawing>(scene->simulation, cameraOf(*scene), std::move(plan), library, bodies);
+    line = std::make_unique<CameraLine>(scene->simulation, cameraOf(*scene), library, std::move(asked), false);
+    lastFrame = -1;
   }
 
   /// Whether something better draws from here on.
@@ -144,7 +178,13 @@ struct PictureMaker::Desk {
       drawAsAsked();
       return true;
     }
-    if (!beside || !beside->made->isReady()) return false;
+    if (!beside || !beside->isReady()) return false;
+    if (beside->plan) {
+      Plan plan = beside->plan->take();
+      beside.reset();
+      takePlan(std::move(plan));
+      return true;
+    }
     const Tier next = beside->tier;
     std::vector<DrawingsBeside::Made> made = beside->made->take();
     const std::string why = beside->made->why();
@@ -171,7 +211,8 @@ struct PictureMaker::Desk {
 
   /// What is better than what draws now is made beside, once that has drawn.
   bool planNext() {
-    if (beside || isKnown || tier == Tier::Asked) return false;
+    if (beside || isKnown || !line || tier == Tier::Asked) return false;
+    if (tier == Tier::Edited && Clock::now() - changed < kQuiet) return false;
     if (!hasDraft(scene->simulation, cameraOf(*scene))) return isKnown = true;
     planBeside(tier == Tier::Sketch ? Tier::Draft : Tier::Asked);
     return true;
@@ -207,7 +248,7 @@ struct PictureMaker::Desk {
     const Plan& plan = line->renderer().plan();
     picture->groups = plan.nodeCount();
     picture->accuracy = plan.accuracy;
-    for (double e : plan.predictedError) picture->error = std::max(picture->error, e);
+    for (double e : held ? *held : plan.predictedError) picture->error = std::max(picture->error, e);
     if (tier == Tier::Edited || tier == Tier::Sketch) picture->error = -1.0;
     for (const TermShare& t : plan.shares) (t.kept ? picture->kept : picture->dropped).push_back(t.term);
     picture->draw_ms = 1e3 * secondsSince(from);
@@ -283,7 +324,7 @@ void PictureMaker::run() {
       wish = *wish_;
       fresh = isNew_;
       isNew_ = false;
-      if (desk && desk->beside) status_.share = desk->beside->made->share();
+      if (desk && desk->beside) status_.share = desk->beside->share();
     }
     try {
       if (!desk) desk = std::make_unique<Desk>(library_);
@@ -298,12 +339,15 @@ void PictureMaker::run() {
         say(awaited(), "", true);
         draws = true;
       }
-      if (!draws) continue;
+      if (!draws) {
+        if (desk->planNext()) say(awaited(), "", true);
+        continue;
+      }
       auto picture = desk->draw(wish, ++number);
       if (desk->planNext()) say(awaited(), "", true);
       const std::lock_guard lock(mutex_);
       newest_ = std::move(picture);
-      isDone_ = !isNew_ && !desk->beside && !desk->isKnown;
+      isDone_ = !isNew_ && !desk->beside && !desk->isKnown && desk->tier == Tier::Asked;
       if (told_) told_();
     } catch (const std::exception& e) {
       if (desk) desk->leave();

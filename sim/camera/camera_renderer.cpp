@@ -28,9 +28,9 @@ Plan planOfLines(const Simulation& simulation, const Camera& camera) {
 
 }  // namespace
 
-Plan cameraPlan(const Simulation& simulation, const Camera& camera, const std::function<void(double)>& planning) {
+Plan cameraPlan(const Simulation& simulation, const Camera& camera, const std::function<void(double)>& planning, const Plan* earlier) {
   const TimedPart part(kPlanningPart);
-  Plan plan = planFor(simulation, {&camera, nullptr}, planning);
+  Plan plan = planFor(simulation, {&camera, nullptr}, planning, Foretold::IfChosen, earlier);
   giveBackFreedMemory();
   return plan;
 }
@@ -90,6 +90,11 @@ int CameraRenderer::viewsOfPicture() const {
     if (small_[e] && present_[e] && mayShow(view_, pose.position + pose.orientation * glm::dvec3(entity.boundingCentre), entity.boundingRadius_m)) ++views;
   }
   return views;
+}
+
+void CameraRenderer::takeAir(CameraRenderer& before) {
+  if (direct_ && before.direct_) direct_->takeAir(*before.direct_);
+  if (buffered_ && before.buffered_) buffered_->takeAir(*before.buffered_);
 }
 
 void CameraRenderer::begin(const WorldState& state) {

@@ -17,7 +17,8 @@ namespace pitviper {
 inline constexpr const char* kPlanningPart = "planning";
 
 /// A camera's plan, made or found again. `planning`: told while it is made.
-Plan cameraPlan(const Simulation& simulation, const Camera& camera, const std::function<void(double share)>& planning = {});
+/// `earlier`: as planFor()'s.
+Plan cameraPlan(const Simulation& simulation, const Camera& camera, const std::function<void(double share)>& planning = {}, const Plan* earlier = nullptr);
 
 class CameraRenderer {
  public:
@@ -26,6 +27,8 @@ class CameraRenderer {
   CameraRenderer(const CameraRenderer&) = delete;
   CameraRenderer& operator=(const CameraRenderer&) = delete;
 
+  /// What another's air was found to be, of the same air, lights, ground and plan; before the first picture.
+  void takeAir(CameraRenderer& before);
   /// Draws and begins reading back; the caller may do other work before finish().
   void begin(const WorldState& state);
   CameraImage finish();

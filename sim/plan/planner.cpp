@@ -144,6 +144,12 @@ bool dropAlike(const Plan& a, const Plan& b) {
          same(a.blocks, b.blocks, [](const NodeBlock& x, const NodeBlock& y) { return x.lit == y.lit; });
 }
 
+/// Of an accuracy. Tables and harmonics count up to their accounts only, as finer groups would not mend what they lose beyond. `isOld`: tables are made anew.
+double leftForWavelengths(const PredictedParts& p, double accuracy, bool isOld) {
+  return (isOld ? 1.0 - budget::kTablesAnew.share : 1.0) * accuracy - std::min(p.tables, budget::kTables.of(accuracy)) -
+         std::min(p.surroundings, budget::kSurroundings.of(accuracy)) - std::min(p.streams, budget::kStreams.of(accuracy)) - p.dropped - p.precision - p.fields;
+}
+
 /// Groups of wavelengths within plan.accuracy, terms that nobody would notice left out, and what all that is off by.
 void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutput>& outputs, const NodesOfPlan& fine, int airPlaces, bool keepLights,
              SightRays& rays, const std::vector<double>& floor, Plan& plan, const PlanProgress& progress) {
@@ -176,16 +182,13 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
     if (attempt == 0 || !dropAlike(before, plan)) changed = allOf(plan);
     const CheckedLines seen = last.tell(static_cast<unsigned long long>(sim.seed) ^ batch, changed, plan);
     if (attempt == 0) last.makeTables(plan);
-    // What is left for wavelengths. Tables and harmonics count up to their accounts only, as finer groups would not mend what they lose beyond.
     std::vector<double> allowed;
     std::vector<size_t> missed;
     for (size_t s = 0; s < plan.parts.size(); ++s) {
       const PredictedParts& p = plan.parts[s];
       // The groups of this slot have changed since tables were made.
       const bool isOld = attempt > 0 && std::find(changed.begin(), changed.end(), s) != changed.end();
-      const double left = (isOld ? 1.0 - budget::kTablesAnew.share : 1.0) * plan.accuracy - std::min(p.tables, budget::kTables.of(plan.accuracy)) -
-                          std::min(p.surroundings, budget::kSurroundings.of(plan.accuracy)) - std::min(p.streams, budget::kStreams.of(plan.accuracy)) -
-                          p.dropped - p.precision - p.fields;
+      const double left = leftForWavelengths(p, plan.accuracy, isOld);
       allowed.push_back(std::max(left, 0.0) / effortOf(plan.accuracy).margin);
       if (p.wavelengths > left) missed.push_back(s);
     }
@@ -204,8 +207,46 @@ void fitPlan(const Simulation& sim, const Eye& eye, const std::vector<ChannelOut
   for (const PredictedParts& p : plan.parts) plan.predictedError.push_back(p.sum());
 }
 
+/// Takes an earlier plan over, where what it loses on lines that no fit has seen is within the accuracy asked for here too; else `plan` stays as it is.
+bool stillHolds(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutput>& outputs, const Plan& earlier, Plan& plan,
+                const PlanProgress& progress) {
+  Plan again = plan;
+  if (!readPlanned(writePlanned(earlier), again) || !suits(again, sim) || again.slotCount != plan.slotCount || earlier.accuracy > plan.accuracy) return false;
+  const auto tell = [&](double share) {
+    if (progress) progress(share);
+  };
+  tell(0.05);
+  SpectralSampling exact;
+  exact.reference = true;
+  Plan fine = makePlan(sim, outputs, exact, eye.camera->where);
+  fine.terms = withSurroundings(plan.terms, plan.terms.surroundings != 0 ? again.surroundings : 0);
+  if (fine.terms.streams > 0) fine.terms.streams = again.streams;
+  const auto seed = static_cast<unsigned long long>(sim.seed);
+  SightRays rays(sim, eye, seed ^ kSurroundingsSeed);
+  const PlanEffort& effort = effortOf(plan.accuracy);
+  const Plan some = someWavelengths(fine, effort.lookedAt);
+  const NodesOfPlan whole(sim, some);
+  const std::vector<double> floor = filmFloors(sim, whole, rays, effort);
+  rays.reseed(seed);
+  const NodesOfPlan exactNodes(sim, fine);
+  tell(0.3);
+  HeldLines extremes(sim, exactNodes, rays.extremes(), kUsualPlaces, floor);
+  again.terms = withSurroundings(again.terms, fine.terms.surroundings);
+  again.terms.streams = fine.terms.streams;
+  dropTerms(again, keepsLights(eye));
+  LastLook{sim, eye, exactNodes, rays, floor, kUsualPlaces, extremes}.tell(seed ^ kLastSeed, allOf(again), again);
+  again.predictedError.clear();
+  for (const PredictedParts& p : again.parts) {
+    if (p.wavelengths > leftForWavelengths(p, plan.accuracy, false)) return false;
+    again.predictedError.push_back(p.sum());
+  }
+  plan = std::move(again);
+  return true;
+}
+
 /// The plan with all its terms, also those that finished() drops as no channel would notice them.
-Plan planOf(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutput>& outputs, const PlanProgress& progress, Foretold error) {
+Plan planOf(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutput>& outputs, const PlanProgress& progress, Foretold error,
+            const Plan* earlier) {
   const SpectralSampling& sampling = eye.camera ? eye.camera->spectral : eye.probe->spectral;
   const Location& where = eye.camera ? eye.camera->where : eye.probe->where;
   Plan plan = makePlan(sim, outputs, sampling, where);
@@ -226,6 +267,12 @@ Plan planOf(const Simulation& sim, const Eye& eye, const std::vector<ChannelOutp
                       "leave --plan out, or name the .plan file of such a run");
   }
   if (!given && !readCachedPlan(key, plan)) {
+    if (earlier && plan.accuracy > 0.0 && stillHolds(sim, eye, outputs, *earlier, plan, progress)) {
+      plan.terms = all;
+      writeCachedPlan(key, plan);
+      if (progress) progress(1.0);
+      return plan;
+    }
     SpectralSampling exact;
     exact.reference = true;
     Plan fine = makePlan(sim, outputs, exact, where);
@@ -279,9 +326,10 @@ std::vector<ChannelOutput> joined(std::vector<ChannelOutput> all, const std::vec
 
 }  // namespace
 
-Plan planFor(const Simulation& sim, const Eye& eye, const PlanProgress& progress, Foretold error) {
+Plan planFor(const Simulation& sim, const Eye& eye, const PlanProgress& progress, Foretold error, const Plan* earlier) {
   const auto [drawn, measured] = plannedOutputs(sim, eye);
-  return finished(ofOutputs(planOf(sim, eye, joined(drawn, measured), progress, error), 0, drawn.size()), eye);
+  // An earlier one is of what is drawn alone.
+  return finished(ofOutputs(planOf(sim, eye, joined(drawn, measured), progress, error, measured.empty() ? earlier : nullptr), 0, drawn.size()), eye);
 }
 
 bool isPlanKnown(const Simulation& sim, const Camera& camera) {
@@ -296,7 +344,7 @@ Plan measuredPlanFor(const Simulation& sim, const Camera& camera) {
   const auto [drawn, measured] = plannedOutputs(sim, {&camera, nullptr});
   if (!measured.empty()) {
     const Eye eye{&camera, nullptr};
-    return finished(ofOutputs(planOf(sim, eye, joined(drawn, measured), {}, Foretold::IfChosen), drawn.size(), measured.size()), eye);
+    return finished(ofOutputs(planOf(sim, eye, joined(drawn, measured), {}, Foretold::IfChosen, nullptr), drawn.size(), measured.size()), eye);
   }
   Camera own = camera;
   own.outputs = measuredOutputs(sim, camera);

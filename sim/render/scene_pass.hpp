@@ -32,6 +32,10 @@ class ScenePass : public LineDrawer {
  public:
   /// Shadows and the light from all around are from here on one with those of another pass of the same plan, which is told the same states.
   void shareLight(const ScenePass& other);
+  /// Tables of the air that another pass has worked out, which was made of the same air, lights, ground and plan.
+  void takeAir(ScenePass& before) {
+    if (air_ && before.air_) air_->takeTables(*before.air_);
+  }
   void setState(const WorldState& state, const ShadowDemand* demand = nullptr) override;
   void draw(const View& view, const WorldState& state, const std::vector<char>& drawn) override;
   void drawTiles(const std::vector<View>& views, const WorldState& state, const std::vector<char>& drawn,

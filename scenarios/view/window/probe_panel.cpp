@@ -54,7 +54,7 @@ class ProbePanel final : public Panel {
     if (state.pixel->x >= f.width || state.pixel->y >= f.height) return;
     note(state);
     const bool isNew = state.picture->number != askedPicture_ || *state.pixel != askedPixel_ || band_ != askedBand_;
-    if (!isNew || state.isPlaying || state.picture->tier == Tier::Sketch || !state.picture->image) return;
+    if (!isNew || state.isPlaying || state.picture->tier != Tier::Asked || !state.picture->image) return;
     askedPicture_ = state.picture->number, askedPixel_ = *state.pixel, askedBand_ = band_, asked_ = true;
     const auto [low, high] = bandOf(state);
     work_.want({state.picture, state.pixel->x, state.pixel->y, low, high});

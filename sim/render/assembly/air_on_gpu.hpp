@@ -21,6 +21,8 @@ class AirOnGpu {
   virtual void begin() {}
   virtual void update(const View&, const WorldState&) {}
   virtual void bind() const {}
+  /// Takes over what another has worked out, which was made of the same air, lights, ground and plan.
+  virtual void takeTables(AirOnGpu&) {}
 };
 
 /// One that is its file alone.
