@@ -15,9 +15,9 @@ using namespace pitviper;
 
 /// As `pitviper --help` lists them; those of one first word together, the plain one before the others.
 std::vector<CommandLine> commands() {
-  return {runCommand(),        viewCommand(),          checkCommand(),      planCommand(),     auditCommand(),         infoCommand(),          integrateCommand(),  streamCommand(),
-          selfTestCommand(),   measureCommand(),    benchCommand(),    scenarioBenchCommand(), accuracyBenchCommand(), firstBenchCommand(), onceBenchCommand(),
-          guardBenchCommand(), phongBenchCommand(), materialCommand(), atmosphereCommand(),    skyCommand(),           keysCommand()};
+  return {runCommand(),       viewCommand(),       checkCommand(),      planCommand(),     auditCommand(),         infoCommand(),          integrateCommand(),
+          streamCommand(),    selfTestCommand(),   measureCommand(),    benchCommand(),    scenarioBenchCommand(), accuracyBenchCommand(), firstBenchCommand(),
+          onceBenchCommand(), guardBenchCommand(), phongBenchCommand(), materialCommand(), atmosphereCommand(),    skyCommand(),           keysCommand()};
 }
 
 void printHelp() {

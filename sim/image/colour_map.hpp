@@ -20,7 +20,8 @@ class ColourMap {
   std::vector<Rgb8> anchors_;
 };
 
-/// "thermal" (black, violet, red, orange, pale yellow) "white_hot" (grey), "black_hot" or "blue_yellow" (also for people who do not tell red from green). Errors: std::invalid_argument for another name.
+/// "thermal" (black, violet, red, orange, pale yellow), "white_hot" (grey), "black_hot" or "blue_yellow" (also for people who do not tell red from green).
+/// Errors: std::invalid_argument for another name.
 const ColourMap& colourMap(std::string_view name);
 
 /// The names that colourMap knows.

@@ -91,8 +91,10 @@ std::string violation(const Use& use) {
         {"unsupported/Eigen/", {"sensors/"}},
         {"vtk", {"sim/scene/import/", "scenarios/commands/charts/"}},
         {"openvdb/", {"sim/scene/import_vdb/"}},
-        {"epoxy/", {"sim/gl/", "sim/render/", "sim/camera/", "scenarios/commands/bench", "sim/stream/projector/"}},
-        {"GLFW/", {"sim/stream/projector/"}},
+        {"epoxy/", {"sim/gl/", "sim/render/", "sim/camera/", "scenarios/commands/bench", "sim/stream/projector/", "scenarios/view/window/"}},
+        {"GLFW/", {"sim/stream/projector/", "scenarios/view/window/"}},
+        {"imgui", {"scenarios/view/window/"}},
+        {"backends/imgui", {"scenarios/view/window/"}},
         {"X11/", {"sim/stream/projector/"}},
         {"gst/", {"sim/stream/gstreamer/"}}};
     for (const auto& [library, allowed] : homes) {

@@ -2,7 +2,10 @@
 
 #define GLFW_INCLUDE_NONE  // OpenGL is epoxy's
 #include <GLFW/glfw3.h>
+#include <backends/imgui_impl_glfw.h>
+#include <backends/imgui_impl_opengl3.h>
 #include <epoxy/gl.h>
+#include <imgui.h>
 
 #include <algorithm>
 #include <array>
@@ -11,9 +14,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "backends/imgui_impl_glfw.h"
-#include "backends/imgui_impl_opengl3.h"
-#include "imgui.h"
 #include "scenarios/view/window/style.hpp"
 #include "sim/parameters/error.hpp"
 #include "sim/stream/projector/x_errors.hpp"

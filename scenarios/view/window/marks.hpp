@@ -1,10 +1,10 @@
 #pragma once
 // What a window's frame shows, by name: where to click, and what is written there, for scripts.
+#include <imgui.h>
+
 #include <functional>
 #include <map>
 #include <string>
-
-#include "imgui.h"
 
 namespace pitviper {
 

@@ -1,11 +1,12 @@
 #pragma once
 // A layer in a window: its pixels, overlays, colour bar; where on it the mouse is.
+#include <imgui.h>
+
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "imgui.h"
 #include "scenarios/view/layer_look.hpp"
 
 namespace pitviper {

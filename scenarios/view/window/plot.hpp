@@ -1,11 +1,11 @@
 #pragma once
 // A plot in a window: axes with round ticks, curves, marks, and where on it the mouse is.
+#include <imgui.h>
+
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include "imgui.h"
 
 namespace pitviper {
 

@@ -45,7 +45,12 @@ ImVec2 ScriptRunner::place(const ScriptLine& line, std::size_t first) const {
   const std::string& name = line.words[0];
   if (line.words.size() > first + 1) {
     const auto surface = marks_.surfaces.find(name);
-    if (surface != marks_.surfaces.end()) return surface->second(scriptNumber(line, first), scriptNumber(line, first + 1));
+    const double x = scriptNumber(line, first), y = scriptNumber(line, first + 1);
+    if (surface != marks_.surfaces.end()) return surface->second(x, y);
+    if (const auto found = marks_.places.find(name); found != marks_.places.end()) {
+      const auto& [low, high] = found->second;
+      return ImVec2(low.x + static_cast<float>(x) * (high.x - low.x), low.y + static_cast<float>(y) * (high.y - low.y));
+    }
   } else if (const auto found = marks_.places.find(name); found != marks_.places.end()) {
     return middleOf(found->second);
   }

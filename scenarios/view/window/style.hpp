@@ -1,6 +1,6 @@
 #pragma once
 // How the window looks: colours, sizes, letters.
-#include "imgui.h"
+#include <imgui.h>
 
 namespace pitviper {
 

@@ -1,9 +1,10 @@
 #pragma once
 // ImGui's widgets that scripts find by name.
+#include <imgui.h>
+
 #include <string>
 #include <vector>
 
-#include "imgui.h"
 #include "scenarios/view/window/marks.hpp"
 
 namespace pitviper {
