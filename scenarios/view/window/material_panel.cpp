@@ -83,9 +83,9 @@ class MaterialPanel final : public Panel {
     } catch (const UserError& e) {
       problem_ = e.what();
     }
+    saving(state, text);
     sphere_.draw(state, *edited_, text);
     if (state.hasScene()) sphere_.show(ImVec2(ImGui::GetContentRegionAvail().x, 26.0f * text), text);
-    saving(state, text);
   }
 
   bool drawWide(ViewState&, ImVec2 size) override {
@@ -313,7 +313,6 @@ class MaterialPanel final : public Panel {
   }
 
   void saving(ViewState& state, float text) {
-    ImGui::Separator();
     if (file_.empty()) file_ = edited_->name() + "_edited.yaml";
     char buffer[512];
     std::snprintf(buffer, sizeof buffer, "%s", file_.c_str());
