@@ -22,9 +22,8 @@ using Kind = ScriptLine::Kind;
 constexpr Command kCommands[] = {
     {"open", Kind::Open, 1, 1, "FILE", "another scenario"},
     {"wait", Kind::Wait, 1, 2, "done|picture|sketch|draft|probe|sphere|'T s' [LIMIT]",
-     "until the picture is as asked; there is one; one of that kind or better; the probe or the sphere has its numbers; so long. LIMIT: seconds, 120 unless "
-     "given"},
-    {"click", Kind::Click, 1, 3, "NAME [X Y]", "the middle of what has that name; of a picture a pixel, of a plot a value, of anything else a share of its sides"},
+     "until the picture is as asked; there is one; one of that kind or better; probe or sphere are ready; so long. LIMIT: seconds, 120 unless given"},
+    {"click", Kind::Click, 1, 3, "NAME [X Y]", "the middle of what has that name; of a picture a pixel, of a plot a value, else a share of its sides"},
     {"drag", Kind::Drag, 5, 6, "NAME X Y X2 Y2 [STEPS]", "with the left button from one such place to another"},
     {"scroll", Kind::Scroll, 2, 4, "NAME BY [X Y]", "the wheel"},
     {"type", Kind::Type, 1, 1, "TEXT", "letters"},

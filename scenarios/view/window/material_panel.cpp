@@ -171,10 +171,11 @@ class MaterialPanel final : public Panel {
     const EditedCurve& curve = edited_->curve(kind_);
     double top = axis.bounds.highest;
     if (top > 1.5) {
-      top = 1.0;
-      for (const CurvePoint& p : curve.points()) top = std::max(top, p.value);
-      if (drags_) top = std::max(top, top_);
-      top_ = top = axis.logarithmic ? std::pow(10.0, std::ceil(std::log10(top * 1.3))) : 1.3 * top;
+      // While a point is dragged the axis stays.
+      double most = 1.0;
+      for (const CurvePoint& p : curve.points()) most = std::max(most, p.value);
+      if (!drags_) top_ = axis.logarithmic ? std::min(std::pow(10.0, std::ceil(std::log10(most * 1.3))), axis.bounds.highest) : 1.3 * most;
+      top = top_;
     }
     const PlotAxis y{std::string(axis.meaning), axis.logarithmic ? 1.0 : axis.bounds.lowest, top * (top <= 1.0 ? 1.04 : 1.0), axis.logarithmic};
     Plot plot("curves", ImVec2(ImGui::GetContentRegionAvail().x, 17.0f * text),

@@ -11,6 +11,7 @@
 #include "scenarios/view/window/widgets.hpp"
 #include "sim/image/srgb.hpp"
 #include "sim/parameters/print.hpp"
+#include "sim/radiometry/constants.hpp"
 
 namespace pitviper {
 namespace {
@@ -66,8 +67,8 @@ class SphereDesk {
     for (std::size_t l = 0; l < wish.lights.size(); ++l) {
       SpherePixels p;
       p.title = "eye, " + wish.lights[l].name;
-      p.colours = coloursOf(*eyes_[l], *wish.material);
-      if (wish.beside) joinHalves(p.colours, coloursOf(*eyes_[l], *wish.beside));
+      p.colours = coloursOf(l, *wish.material);
+      if (wish.beside) joinHalves(p.colours, coloursOf(l, *wish.beside));
       result->pictures.push_back(std::move(p));
       if (l == 0) result->took_ms = since(from), result->after_ms = since(wish.asked);
     }
@@ -95,10 +96,11 @@ class SphereDesk {
     for (const SphereChannel& c : wish.bands) key += "/" + c.name;
     if (key == key_) return;
     key_ = key;
-    eyes_.clear(), bands_.clear(), drawnBands_.clear();
+    eyes_.clear(), whites_.clear(), bands_.clear(), drawnBands_.clear();
     SphereView view;
     view.temperature_K = wish.temperature_K;
     const glm::dvec3 direction(0.4, 0.5, 1.0);
+    for (const Illuminant& l : wish.lights) whites_.push_back(whiteUnder(l.irradiance));
     for (const Illuminant& l : wish.lights) eyes_.push_back(std::make_unique<SpherePicture>(eye_, SphereLight{l.irradiance, direction, l.ambient}, view));
     for (const SphereChannel& c : wish.bands)
       bands_.push_back(
@@ -110,11 +112,20 @@ class SphereDesk {
     return light.validLow() <= channel.kernel.supportLow() && light.validHigh() >= channel.kernel.supportHigh() ? light : Spectrum(0.0);
   }
 
-  static std::vector<Rgb8> coloursOf(const SpherePicture& picture, const Material& material) {
-    const auto xyz = picture.draw(material);
-    float white = 0.0f;
-    for (float y : strongestPrimary(xyz[0], xyz[1], xyz[2])) white = std::max(white, y);
-    return srgbPixels(xyz[0], xyz[1], xyz[2], white > 0.0f ? static_cast<double>(white) : 1.0);
+  std::vector<Rgb8> coloursOf(std::size_t light, const Material& material) const {
+    const auto xyz = eyes_[light]->draw(material);
+    return srgbPixels(xyz[0], xyz[1], xyz[2], whites_[light]);
+  }
+
+  /// The screen's white: what an ideal diffuse reflector shows that faces the light. Glints are brighter, and cut.
+  double whiteUnder(const Spectrum& light) const {
+    std::vector<float> xyz[3];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Spectrum seen = eye_[k].kernel * light;
+      xyz[k] = {static_cast<float>(seen.integral(eye_[k].kernel.supportLow(), eye_[k].kernel.supportHigh()) / kPi)};
+    }
+    const double white = static_cast<double>(strongestPrimary(xyz[0], xyz[1], xyz[2])[0]);
+    return white > 0.0 ? white : 1.0;
   }
 
   std::string verdictOf(const SphereWish& wish) const {
@@ -128,6 +139,7 @@ class SphereDesk {
 
   std::vector<SphereChannel> eye_;
   std::vector<SpherePixels> drawnBands_;
+  std::vector<double> whites_;  ///< of each light [cd/m2]
   std::string key_;
   std::vector<std::unique_ptr<SpherePicture>> eyes_, bands_;
 };
