@@ -57,7 +57,8 @@ void PicturesPanel::overlay(ViewState& state, const PictureTile& tile) {
     const ImVec2 low = tile.at(s.left, s.top), high = tile.at(s.right, s.bottom);
     const ImVec2 a(low.x - 3.0f, low.y - 3.0f), b(high.x + 3.0f, high.y + 3.0f);
     if (o.boxes) {
-      list->AddRect(a, b, colours::kGood, 0.0f, 0, 1.2f);
+      // What fills the picture from side to side has a name, and no box.
+      if (s.left > 0 || s.right < state.picture->frame.width) list->AddRect(a, b, colours::kGood, 0.0f, 0, 1.2f);
       std::string label = o.names ? name : "";
       if (o.ranges) label += (label.empty() ? "" : "  ") + (s.nearest_m < 1e4 ? print("%.0f m", s.nearest_m) : print("%.2f km", 1e-3 * s.nearest_m));
       const ImVec2 at(std::max(a.x, tile.low().x + 2.0f), std::max(a.y - 1.15f * text, tile.low().y + 2.0f));

@@ -151,7 +151,7 @@ void Plot::legend(const std::vector<std::pair<std::string, ImU32>>& names) {
   for (const auto& [name, colour] : names) widest = std::max(widest, ImGui::CalcTextSize(name.c_str()).x);
   ImVec2 p(high_.x - widest - 2.4f * text, low_.y + 0.4f * text);
   list_->AddRectFilled(ImVec2(p.x - 0.3f * text, p.y - 0.2f * text),
-                       ImVec2(high_.x - 0.2f * text, p.y + 1.1f * text * static_cast<float>(names.size()) + 0.1f * text), IM_COL32(18, 20, 25, 200), 3.0f);
+                       ImVec2(high_.x - 0.2f * text, p.y + 1.1f * text * static_cast<float>(names.size()) + 0.1f * text), IM_COL32(18, 20, 25, 120), 3.0f);
   for (const auto& [name, colour] : names) {
     list_->AddLine(ImVec2(p.x, p.y + 0.5f * text), ImVec2(p.x + 1.4f * text, p.y + 0.5f * text), colour, 2.5f);
     list_->AddText(ImVec2(p.x + 1.8f * text, p.y), colours::kText, name.c_str());

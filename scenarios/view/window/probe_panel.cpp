@@ -165,7 +165,8 @@ class ProbePanel final : public Panel {
         for (std::size_t k : columns) {
           ImGui::TableNextColumn();
           const double all = probe->parts.all[k];
-          ImGui::Text("%.4g  %.3g %%", values[k], all != 0.0 ? 100.0 * values[k] / all : 0.0);
+          if (std::abs(values[k]) > kListed * std::abs(all)) ImGui::Text("%.4g  %.3g %%", values[k], 100.0 * values[k] / all);
+          else ImGui::TextDisabled("-");
         }
       };
       for (const auto& r : probe->parts.rows) {
