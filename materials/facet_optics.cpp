@@ -117,7 +117,9 @@ void FacetOptics::chooseAngles() {
   constexpr int kWavelengths = 24;
   for (facetAngles_ = statesPerUm_ > 0.0 ? kStateAngles : 46;; facetAngles_ = 2 * facetAngles_ - 1) {
     angleError_ = 0.0;
-    for (int i = 0; i <= kWavelengths; ++i) {
+    const bool last = statesPerUm_ > 0.0 || 2 * facetAngles_ - 1 > kMostFacetAngles;
+    // Steps that one wavelength shows to be too coarse are not looked at by the others.
+    for (int i = 0; i <= kWavelengths && (last || angleError_ <= kAngleError); ++i) {
       const double w = std::clamp(low * std::pow(high / low, i / double(kWavelengths)), low, high);
       const Stack stack = stackAt(w);
       const FringeMean fringes(stack.layers, w);
@@ -131,7 +133,7 @@ void FacetOptics::chooseAngles() {
         before = next;
       }
     }
-    if (statesPerUm_ > 0.0 || angleError_ <= kAngleError || 2 * facetAngles_ - 1 > kMostFacetAngles) return;
+    if (last || angleError_ <= kAngleError) return;
   }
 }
 

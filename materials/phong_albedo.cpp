@@ -8,27 +8,19 @@
 
 namespace pitviper {
 
-PhongAlbedo::PhongAlbedo(double n) : factor_((n + 2.0) / (n + 1.0) / (2.0 * kPi)) {
-  static const double edges[] = {0.0, 1e-6, 1e-4, 1e-3, 0.01, 0.05, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0};
-  for (const auto& node : fineNodes(0.0, 1.0, edges, 512)) {
-    const double ca = std::pow(node.x, 1.0 / (n + 1.0));
-    rings_.push_back({ca, std::sqrt(std::max(0.0, 1.0 - ca * ca)), node.weight});
-  }
-}
-
 double PhongAlbedo::at(double theta) const {
-  const double ct = std::cos(theta), st = std::sin(theta);
+  const double st = std::sin(theta), ct = std::cos(theta);
+  if (st <= 0.0) return 1.0;
+  // c = sin(theta) exp(-y^2 / (n + 1)): the power becomes a Gaussian, and where the horizon begins to cut, the rings are smooth in y.
+  static const auto rule = gaussLegendre(32, 0.0, 5.5);
   double sum = 0.0;
-  for (const Ring& r : rings_) {
-    const double a = ct * r.cosine, b = st * r.sine;
-    double ring = 2.0 * kPi * a;
-    if (b > a) {
-      const double phi = std::acos(std::clamp(-a / b, -1.0, 1.0));
-      ring = 2.0 * (phi * a + b * std::sin(phi));
-    }
-    sum += r.weight * ring;
+  for (const auto& node : rule) {
+    const double y = node.x, s = std::exp(-y * y / (n_ + 1.0)), c = st * s;
+    const double phi = std::acos(std::clamp(-c * ct / (st * std::sqrt((1.0 - c) * (1.0 + c))), -1.0, 1.0));
+    const double ring = phi * c * ct + st * std::sqrt(std::max(0.0, -std::expm1(-2.0 * y * y / (n_ + 1.0))));
+    sum += node.weight * std::exp(-y * y) * 2.0 * y / (n_ + 1.0) * ring;
   }
-  return factor_ * sum;
+  return std::min(1.0, ct * (1.0 - std::pow(st, n_ + 2.0)) + (n_ + 2.0) / kPi * std::pow(st, n_ + 1.0) * sum);
 }
 
 }  // namespace pitviper

@@ -1,22 +1,18 @@
 #pragma once
-#include <vector>
 
 namespace pitviper {
 
 /// Directional-hemispherical reflectance of the unit Phong lobe:
-///   A(theta) = (n + 2) / (n + 1) / (2 pi) integral_0^1 dt integral dphi max(0, cos theta cos alpha + sin theta sin alpha cos phi),
-/// t = cos^(n+1) alpha; the azimuth integral in closed form.
+///   A = cos(theta) (1 - sin^(n+2) theta) + (n + 2) / pi integral_0^sin(theta) c^n (phi c cos(theta) + sqrt(sin^2 theta - c^2)) dc,
+/// cos phi = -c cos(theta) / (sin(theta) sqrt(1 - c^2)): rings about the mirrored direction, whole above the horizon in closed form, the cut ones by 32
+/// points. Error below 1e-6; 1 at normal view.
 class PhongAlbedo {
  public:
-  explicit PhongAlbedo(double exponent);
+  explicit PhongAlbedo(double exponent) : n_(exponent) {}
   double at(double theta) const;
 
  private:
-  struct Ring {
-    double cosine, sine, weight;
-  };
-  double factor_;
-  std::vector<Ring> rings_;
+  double n_;
 };
 
 }  // namespace pitviper

@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 
 #include "materials/models.hpp"
-#include "materials/reflection.hpp"
 #include "scenarios/import/import_yaml.hpp"
-#include "scenarios/view/edited_lobe.hpp"
 #include "scenarios/view/library_lookup.hpp"
 
 namespace pitviper {
@@ -26,7 +25,7 @@ void refuseSubstrateWord(const std::string& word) {
                     "choose one of materials/substances");
 }
 
-/// Where a mistake in a film is.
+/// Where a mistake is: only films have any.
 const Location kInFilm{"film", 0, 0, -1};
 
 Value scalarOf(std::string text) {
@@ -47,8 +46,13 @@ Value treeOf(std::vector<std::pair<std::string, Value>> entries) {
 }
 
 /// The component of the text as a tree whose spectra are words: read as any other, without their rows going through text.
-Value filmComponent(const EditedSurface& s) {
+Value componentOf(const EditedSurface& s) {
+  if (!s.film && isZeroCurve(*s.curve(CurveKind::Specular))) return treeOf({{"reflection", scalarOf("lambertian")}, {"reflectance", scalarOf("curve")}});
+  if (!s.film)
+    return treeOf(
+        {{"reflection", scalarOf("spectral_phong")}, {"diffuse", scalarOf("curve")}, {"specular", scalarOf("curve")}, {"exponent", scalarOf("curve")}});
   const EditedFilm& film = *s.film;
+  refuseSubstrateWord(film.substrate);
   std::vector<std::pair<std::string, Value>> layer{{"index", treeOf({{"n", scalarOf("curve")}, {"k", scalarOf("curve")}})},
                                                    {"thickness", scalarOf(filmThicknessText(film))}};
   if (film.coherent) layer.emplace_back("coherent", scalarOf(*film.coherent ? "true" : "false"));
@@ -67,20 +71,11 @@ Value filmComponent(const EditedSurface& s) {
   return treeOf(std::move(all));
 }
 
-void addFilmFacets(Material& m, const EditedSurface& s, const Libraries& libraries) {
-  refuseSubstrateWord(s.film->substrate);
-  const ReflectionModel& model = *reflectionModels().named("microfacet");
-  static const ParameterTable table = componentTable(model);
-  const Value component = filmComponent(s);
-  const Record record(component, table);
-  const auto spectrumOf = [&](const Value& v, const Parameter& p) {
-    if (v.text != "curve") return spectraIn(libraries.materials, libraries).read(v, p.unit, p.key);  // of a substance
-    return s.curve(p.key == "n" ? CurveKind::FilmIndex : p.key == "k" ? CurveKind::FilmAbsorption : CurveKind::Diffuse)->spectrum();
-  };
-  const MadeReflection made =
-      componentMaker(model, record, spectrumOf, [&](const std::string& name, const Location& at) { return substanceTree(name, at, libraries); }, {})(0.0);
-  for (const auto& c : made.components) m.reflections.push_back(c);
-  m.notes = made.notes;
+CurveKind kindOf(const std::string& key) {
+  static const std::map<std::string, CurveKind> others{
+      {"specular", CurveKind::Specular}, {"exponent", CurveKind::Exponent}, {"n", CurveKind::FilmIndex}, {"k", CurveKind::FilmAbsorption}};
+  const auto found = others.find(key);
+  return found != others.end() ? found->second : CurveKind::Diffuse;
 }
 
 }  // namespace
@@ -161,15 +156,23 @@ std::string materialText(const EditedSurface& s, const std::string& description,
 }
 
 std::shared_ptr<const Material> madeMaterial(const EditedSurface& s, const Libraries& libraries) {
+  const Value component = componentOf(s);
+  const ReflectionModel& model = *reflectionModels().named(component.entries.front().second.text);
+  const ParameterTable table = componentTable(model);
+  const Record record(component, table);
+  const auto spectrumOf = [&](const Value& v, const Parameter& p) {
+    if (v.text != "curve") return spectraIn(libraries.materials, libraries).read(v, p.unit, p.key);  // of a substance
+    return s.curve(kindOf(p.key))->spectrum();
+  };
+  MadeReflection made =
+      componentMaker(model, record, spectrumOf, [&](const std::string& name, const Location& at) { return substanceTree(name, at, libraries); }, {})(0.0);
   auto m = std::make_shared<Material>();
   m->name = s.name;
   m->provenance = s.source;
-  const auto spectrum = [&](CurveKind kind) { return s.curve(kind)->spectrum(); };
-  if (s.film) addFilmFacets(*m, s, libraries);
-  else if (isZeroCurve(*s.curve(CurveKind::Specular))) m->reflections.push_back(makeLambertian(spectrum(CurveKind::Diffuse)));
-  else m->reflections.push_back(makeEditedPhong(spectrum(CurveKind::Diffuse), spectrum(CurveKind::Specular), spectrum(CurveKind::Exponent)));
-  m->modifiers.assign(m->reflections.size(), -1);
-  if (!s.film && s.curve(CurveKind::Emissivity)) m->given.emplace().spectrum = spectrum(CurveKind::Emissivity);
+  m->notes = std::move(made.notes);
+  m->modifiers.assign(made.components.size(), -1);
+  m->reflections.assign(made.components.begin(), made.components.end());
+  if (!s.film && s.curve(CurveKind::Emissivity)) m->given.emplace().spectrum = s.curve(CurveKind::Emissivity)->spectrum();
   return m;
 }
 

@@ -57,8 +57,7 @@ struct EditedSurface {
 /// A material file that loads anywhere. What is not in force is not in it; without any specular reflectance it is lambertian.
 std::string materialText(const EditedSurface& surface, const std::string& description, const std::string& source);
 
-/// What that text means, made from the curves themselves: to rounding of twelve digits, but for the lobe's reflectance (makeEditedPhong). UserError for a film
-/// that cannot be.
+/// What that text means, made from the curves themselves: to rounding of twelve digits. UserError for a film that cannot be.
 std::shared_ptr<const Material> madeMaterial(const EditedSurface& surface, const Libraries& libraries);
 
 }  // namespace pitviper

@@ -6,8 +6,6 @@
 #include <random>
 
 #include "materials/energy.hpp"
-#include "materials/phong_albedo.hpp"
-#include "scenarios/view/edited_lobe.hpp"
 #include "scenarios/view/edited_material.hpp"
 #include "scenarios/view/material_text.hpp"
 #include "scenarios/view/surface_import.hpp"
@@ -179,15 +177,6 @@ TEST(EditedMaterial, ADragIsOneStep) {
   EXPECT_TRUE(m.canUndo());
   m.undo();
   EXPECT_EQ(m.curve(Diffuse).points()[0].wavelength_um, 0.3);
-}
-
-TEST(EditedMaterial, LobesReturnWhatRingsSay) {
-  double worst = 0.0;
-  for (double n : {0.0, 0.7, 5.0, 40.0, 1000.0, 1e5}) {
-    const PhongAlbedo rings(n);
-    for (double angle : {0.0, 0.4, 0.9, 1.3, 1.5, 0.5 * kPi}) worst = std::max(worst, std::abs(phongLobeAlbedo(n, angle) - rings.at(angle)));
-  }
-  bound("albedo of Phong's lobe, closed form and 32 points against 5600 rings, off by", worst, 1e-6, "points; asked for 1e-5");
 }
 
 void expectTextMeans(const EditedMaterial& m, const char* what, double reflectances) {
