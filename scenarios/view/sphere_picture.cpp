@@ -14,7 +14,7 @@ namespace pitviper {
 namespace {
 
 constexpr double kQuarterTurn = 0.5 * kPi;
-/// Of the accuracy: integrals over wavelength, then angles between a table's entries.
+/// Of the tolerance: integrals over wavelength, then angles between a table's entries.
 constexpr double kOfWavelengths = 0.1, kOfAngles = 0.25;
 /// Finest steps of a formula's table to one of its own: a sixteenth of the error that its axis is made for.
 constexpr int kFiner = 4;
@@ -126,7 +126,7 @@ SpherePicture::SpherePicture(std::vector<SphereChannel> channels, SphereLight li
   if (view_.side < 1 || view_.side > 16384) throw UserError({}, print("a picture of a sphere %d pixels wide", view_.side), "1 to 16384", "correct it");
   if (!(view_.radius_px > 0.0)) throw UserError({}, print("a sphere of a radius of %g pixels", view_.radius_px), "more than 0", "correct it");
   if (!(view_.temperature_K >= 0.0)) throw UserError({}, print("a sphere at %g K", view_.temperature_K), "0 K or more", "correct it");
-  if (!(view_.accuracy > 0.0)) throw UserError({}, print("an accuracy of %g", view_.accuracy), "more than 0", "take 1e-3");
+  if (!(view_.tolerance > 0.0)) throw UserError({}, print("a tolerance of %g", view_.tolerance), "more than 0", "take 1e-3");
   for (const SphereChannel& c : channels_)
     for (const Spectrum* own : {&light_.irradiance, light_.ambient ? &*light_.ambient : nullptr})
       if (own && !own->isZero()) {
@@ -231,7 +231,7 @@ SpherePicture::Part SpherePicture::part(const Material& m, double share) const {
         for (const HasFringes* f : fringes) least = std::min(least, f->resolvedBy_um(w));
         return least;
       },
-      probes, kOfWavelengths * view_.accuracy);
+      probes, kOfWavelengths * view_.tolerance);
   /// Adds share x the sum over wavelengths of a group's weights x f.
   const auto sum = [&](std::size_t number, double* values, const auto& f) {
     for (std::size_t p = 0; p < rule.wavelength_um.size(); ++p) {
@@ -255,7 +255,7 @@ SpherePicture::Part SpherePicture::part(const Material& m, double share) const {
     AngleAxis finer = free.axes[0];
     finer.count = (finer.count - 1) * kFiner + 1;
     const bool smooth = free.own.size() == 1 && r->angleError() > 0.0;
-    ChannelTable table = smooth ? bisectedTable(finer, channels, kOfAngles * view_.accuracy, at) : filledTable(free.axes, channels, at);
+    ChannelTable table = smooth ? bisectedTable(finer, channels, kOfAngles * view_.tolerance, at) : filledTable(free.axes, channels, at);
     const ReflectionComponent* lobe = r->lobe().file.empty() ? nullptr : r.get();
     const auto same = std::find_if(made.reflected.begin(), made.reflected.end(), [&](const Weighted& w) {
       return lobe == nullptr || w.lobe == nullptr ? lobe == w.lobe : sameLobe(lobe->lobe(), w.lobe->lobe());
@@ -272,7 +272,7 @@ SpherePicture::Part SpherePicture::part(const Material& m, double share) const {
     const bool varies = m.hemisphericalVaries();
     const AngleAxis axis{varies ? Angle::View : Angle::None, varies ? kViewEntries : 1, varies ? kQuarterTurn : 0.0};
     const ValuesAtAngles at = [&](const std::array<double, 2>& angles, double* values) { leaves(angles[0], values); };
-    made.own = varies ? bisectedTable(axis, channels, kOfAngles * view_.accuracy, at) : filledTable({axis, AngleAxis{}}, channels, at);
+    made.own = varies ? bisectedTable(axis, channels, kOfAngles * view_.tolerance, at) : filledTable({axis, AngleAxis{}}, channels, at);
   }
   return made;
 }

@@ -33,7 +33,7 @@ struct SphereView {
   double radius_px = 240.0;            ///< of the sphere
   glm::dvec2 centre_px{256.0, 256.0};  ///< from the picture's upper left corner; the sphere may reach beyond the picture
   double temperature_K = 300.0;
-  double accuracy = 1e-3;  ///< of what a pixel's middle shows, or of a thousandth of the largest
+  double tolerance = 1e-3;  ///< of what a pixel's middle shows, or of a thousandth of the largest
 };
 
 class SpherePicture {

@@ -132,7 +132,7 @@ TEST(SpherePicture, SpectralPhongBeatsThePaper) {
       bound(print("sphere, %s, %s, RMS error of linear sRGB in 8-bit units", curves.name, near ? "near" : "far"),
             255.0 / most * std::sqrt(sum / (3.0 * static_cast<double>(ours.size()))), near ? curves.near : curves.far,
             "Table 1 of the paper, 200 entries; against sums at 1 nm steps, the brightest is 255");
-      bound(print("sphere, %s, %s, worst error of Y at a pixel", curves.name, near ? "near" : "far"), worst, view.accuracy, "accuracy 1e-3");
+      bound(print("sphere, %s, %s, worst error of Y at a pixel", curves.name, near ? "near" : "far"), worst, view.tolerance, "accuracy 1e-3");
     }
   }
 }
@@ -177,8 +177,8 @@ TEST(SpherePicture, WarmSpheresInClosedForm) {
     }
     off = std::max(off, std::abs(static_cast<double>(warm[0][pixelOf(view, column, 16)]) / sum - 1.0));
   }
-  bound("anodised_titanium at 300 K, worst error of 15 pixels from its middle to its edge", off, view.accuracy,
-        "emissivity x Planck's law summed at 20 nm steps; accuracy 1e-3");
+  bound("anodised_titanium at 300 K, worst error of 15 pixels from its middle to its edge", off, view.tolerance,
+        "emissivity x Planck's law summed at 20 nm steps; tolerance 1e-3");
   // Within walls as warm as itself everything that is opaque looks black.
   SphereLight within;
   within.ambient = Spectrum(Spectrum::BlackBody{300.0, 1.0});
@@ -244,7 +244,7 @@ TEST(SpherePicture, AnyMaterialAgainstItsBrdf) {
       for (int k = 0; k < 3; ++k)
         worst =
             std::max(worst, std::abs(static_cast<double>(drawn[static_cast<std::size_t>(k)][pixels[p]]) - sums[p][k]) / std::max(sums[p][k], 1e-3 * most[k]));
-    bound("sphere of " + name + ", worst error of X, Y or Z at 50 pixels", worst, view.accuracy, "its BRDF summed at 1 nm steps; accuracy 1e-3");
+    bound("sphere of " + name + ", worst error of X, Y or Z at 50 pixels", worst, view.tolerance, "its BRDF summed at 1 nm steps; tolerance 1e-3");
   }
 }
 
