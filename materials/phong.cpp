@@ -15,7 +15,7 @@ namespace physics {
 
 namespace {
 
-/// Each lobe takes about 10 ms to integrate over the hemisphere.
+/// Each lobe takes about a millisecond to integrate over the hemisphere.
 constexpr double kMostLobes = 256.0;
 
 class Phong final : public ReflectionComponent {

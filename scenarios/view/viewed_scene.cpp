@@ -41,7 +41,9 @@ ViewedScenePointer withAccuracy(const ViewedScene& scene, double accuracy) {
 
 ViewedScenePointer withMaterial(const ViewedScene& scene, std::size_t number, std::shared_ptr<const Material> material) {
   auto other = copyOf(scene);
-  other->simulation.materials.at(number) = std::move(material);
+  // What light passes throws other shadows: nothing that was found of the bodies holds.
+  if (material->isTransparent() != scene.simulation.materials.at(number)->isTransparent()) other->geometry = std::make_shared<const int>(0);
+  other->simulation.materials[number] = std::move(material);
   return other;
 }
 

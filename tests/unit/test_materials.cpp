@@ -1,12 +1,15 @@
 // Reflection components and their hemispherical reflectance, the energy a material may return, and how its tables reach the renderer.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "materials/brdf_table.hpp"
 #include "materials/energy.hpp"
+#include "materials/phong_albedo.hpp"
 #include "materials/reflection.hpp"
 #include "sim/radiometry/constants.hpp"
+#include "sim/radiometry/quadrature.hpp"
 #include "sim/render/assembly/tables.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -52,6 +55,28 @@ TEST(Materials, PhongKeepsItsEnergyAndReciprocity) {
       figure("Phong, n = " + std::to_string(static_cast<long>(n)) + ", reflectance at " + std::to_string(a).substr(0, 3) + " rad", phong->hemispherical(5.0, a),
              phong->ReflectionComponent::hemispherical(5.0, a), 1e-5, "integration about the mirrored view; grid of 0.25 deg in the closed form");
     }
+}
+
+/// Albedo of Phong's lobe by rings about the mirrored direction, each of equal weight in cos^(n+1), their azimuths in closed form.
+double byRings(double n, double theta) {
+  static const double edges[] = {0.0, 1e-6, 1e-4, 1e-3, 0.01, 0.05, 0.2, 0.4, 0.6, 0.8, 0.95, 1.0};
+  static const auto rings = fineNodes(0.0, 1.0, edges, 512);
+  double sum = 0.0;
+  for (const auto& node : rings) {
+    const double c = std::pow(node.x, 1.0 / (n + 1.0)), a = std::cos(theta) * c, b = std::sin(theta) * std::sqrt(std::max(0.0, 1.0 - c * c));
+    const double phi = b > a ? std::acos(std::clamp(-a / b, -1.0, 1.0)) : kPi;
+    sum += node.weight * 2.0 * (phi * a + (b > a ? b * std::sin(phi) : 0.0));
+  }
+  return (n + 2.0) / (n + 1.0) / (2.0 * kPi) * sum;
+}
+
+TEST(Materials, PhongAlbedoIsWhatRingsSay) {
+  double worst = 0.0;
+  for (double n : {0.0, 0.7, 5.0, 40.0, 1000.0, 1e5, 1e7}) {
+    const PhongAlbedo albedo(n);
+    for (double angle : {0.0, 0.01, 0.4, 0.9, 1.3, 1.5, 1.57, 0.5 * kPi}) worst = std::max(worst, std::abs(albedo.at(angle) - byRings(n, angle)));
+  }
+  bound("albedo of Phong's lobe, 32 points against 5600 rings, off by", worst, 2e-6, "1e-6 of the points and as much of the rings");
 }
 
 TEST(Materials, TabulatedLambertianIsLambertian) {
