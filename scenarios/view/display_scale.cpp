@@ -23,6 +23,15 @@ std::vector<float> finite(const std::vector<float>& pixels) {
   return some;
 }
 
+/// An even choice of pixels that is large enough for a percentile, of pictures that come one after another.
+std::vector<float> everySome(const std::vector<float>& pixels) {
+  constexpr std::size_t kEnough = 20000;
+  const std::size_t step = 1 + pixels.size() / kEnough;
+  std::vector<float> some;
+  for (std::size_t k = 0; k < pixels.size(); k += step) some.push_back(pixels[k]);
+  return some;
+}
+
 double quantile(std::vector<float>& v, double share) {
   const auto at = v.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(v.size() - 1));
   std::nth_element(v.begin(), at, v.end());
@@ -34,11 +43,12 @@ double quantile(std::vector<float>& v, double share) {
 const char* nameOf(ScaleKind kind) { return kind == ScaleKind::Linear ? "linear" : kind == ScaleKind::Logarithmic ? "logarithmic" : "histogram"; }
 
 std::pair<double, double> DisplayScale::endsOf(const std::vector<float>& pixels) {
-  std::vector<float> some = finite(pixels);
+  std::vector<float> some = finite(everySome(pixels));
   if (some.empty()) return {0.0, 1.0};
   double low = quantile(some, 0.005), high = quantile(some, 0.998);
   if (isNearlySame(low, high)) {
-    const auto [least, most] = std::minmax_element(some.begin(), some.end());
+    const std::vector<float> all = finite(pixels);
+    const auto [least, most] = std::minmax_element(all.begin(), all.end());
     low = *least, high = *most;
   }
   return {low, high};

@@ -42,7 +42,7 @@ class PicturesPanel {
   void fly(ViewState& state, const PictureTile& tile);
   std::vector<std::unique_ptr<PictureTile>> tiles_;
   std::uint64_t number_ = 0;
-  const Frame* frame_ = nullptr;
+  const Frame *frame_ = nullptr, *shaped_ = nullptr;
   FrameLook look_;
   std::vector<std::string> loaded_;
   glm::ivec2 from_{0};

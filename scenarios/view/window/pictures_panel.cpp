@@ -31,8 +31,9 @@ void PicturesPanel::reload(ViewState& state) {
   const std::string composite = "composite " + (state.three.size() == 3 ? state.three[0] + ", " + state.three[1] + ", " + state.three[2] : std::string());
   std::vector<std::string> wanted = state.composite && state.three.size() == 3 ? std::vector{composite} : state.shown;
   std::erase_if(wanted, [&](const std::string& name) { return name != composite && !layerNamed(frame, name); });
+  const Overlays& o = state.overlays;
+  if (shaped_ != &frame && (o.outlines || o.boxes || o.gate)) state.shapes = EntityShapes::of(frame), shaped_ = &frame;
   if (number_ == state.picture->number && frame_ == &frame && look_ == state.look && loaded_ == wanted) return;
-  if (frame_ != &frame) state.shapes = EntityShapes::of(frame);
   number_ = state.picture->number, frame_ = &frame, look_ = state.look, loaded_ = wanted;
   tiles_.resize(wanted.size());
   for (std::size_t k = 0; k < wanted.size(); ++k) {

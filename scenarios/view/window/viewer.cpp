@@ -670,8 +670,9 @@ void Viewer::run() {
     now_s_ = elapsed();
     takeLoaded();
     watchFile(now_s_);
-    tick(now_s_ - last_s);
     ask();
+    tick(now_s_ - last_s);
+    ask();  // for the next frame at once, where the one before has come
     last_s = now_s_;
     // Where nothing changes the window is drawn seldom: what draws it is what draws the scene, where there is no GPU.
     const std::uint64_t picture = state_.picture ? state_.picture->number : 0;
