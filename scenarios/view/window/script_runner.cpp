@@ -38,7 +38,7 @@ ImVec2 middleOf(const Marks::Place& p) { return ImVec2(0.5f * (p.low.x + p.high.
 
 }  // namespace
 
-ScriptRunner::ScriptRunner(std::vector<ScriptLine> script, GlfwWindow& window, const Marks& marks, Hooks hooks)
+ScriptRunner::ScriptRunner(std::vector<ScriptLine> script, GlfwWindow& window, Marks& marks, Hooks hooks)
     : script_(std::move(script)), window_(window), marks_(marks), hooks_(std::move(hooks)) {}
 
 ImVec2 ScriptRunner::place(const ScriptLine& line, std::size_t first) const {
@@ -110,13 +110,19 @@ void ScriptRunner::begin(const ScriptLine& line, double now_s) {
       break;
     }
     case Kind::Click:
+      marks_.wanted = w[0];
+      rest();
+      rest();
       actions_.push_back([this, line] {
         const ImVec2 at = place(line, 1);
         return window_.onCursor(static_cast<double>(at.x), static_cast<double>(at.y)), true;
       });
       rest();
       actions_.push_back([this, line] { return press(place(line, 1), true), true; });
-      actions_.push_back([this] { return window_.onButton(GLFW_MOUSE_BUTTON_LEFT, false, 0), true; });
+      actions_.push_back([this] {
+        marks_.wanted.clear();
+        return window_.onButton(GLFW_MOUSE_BUTTON_LEFT, false, 0), true;
+      });
       rest();
       break;
     case Kind::Drag: {

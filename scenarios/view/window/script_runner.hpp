@@ -19,7 +19,7 @@ class ScriptRunner {
     std::function<bool(const std::string& what, const Location& where)> isReached;  ///< of `wait`
     std::function<void(const std::string& file)> writePicture;
   };
-  ScriptRunner(std::vector<ScriptLine> script, GlfwWindow& window, const Marks& marks, Hooks hooks);
+  ScriptRunner(std::vector<ScriptLine> script, GlfwWindow& window, Marks& marks, Hooks hooks);
   /// Between two frames; false: it has ended. Errors: UserError where a name is nowhere, or an expectation does not hold.
   bool step(double now_s);
   /// For something that is not there yet: nothing is done meanwhile.
@@ -32,7 +32,7 @@ class ScriptRunner {
   void key(const ScriptLine& line);
   std::vector<ScriptLine> script_;
   GlfwWindow& window_;
-  const Marks& marks_;
+  Marks& marks_;
   Hooks hooks_;
   std::size_t next_ = 0;
   std::deque<std::function<bool()>> actions_;  ///< true: done
