@@ -29,6 +29,13 @@ const std::vector<std::pair<std::string, double>>& speeds() {
   return all;
 }
 
+/// Words that ImGui reads as a format: a file's name may have % in it.
+std::string asFormat(const std::string& words) {
+  std::string all;
+  for (const char c : words) all += c == '%' ? std::string("%%") : std::string(1, c);
+  return all;
+}
+
 /// What the picture is, and how far off.
 std::string tierText(const ShownPicture& p) {
   const std::string most = p.error >= 0.0 ? print("at most %.2g %% expected", 100.0 * p.error) : "error unknown";
@@ -148,6 +155,8 @@ void Viewer::open(const std::string& file) {
     state_.files = framesIn(file);
     return;
   }
+  // A picture of a file has no scene that ask() could hold against the one to come.
+  if (state_.picture && state_.picture->tier == Tier::File) state_.picture.reset();
   loader_.want(state_.wish.scenario);
 }
 
@@ -180,6 +189,7 @@ void Viewer::takeLoaded() {
   const std::shared_ptr<const Loaded> newest = loader_.newest();
   if (!newest || newest == loaded_) return;
   loaded_ = newest;
+  if (!state_.files.empty()) return;  // frames were opened while it was read
   state_.problem = loaded_->problem;
   if (!loaded_->scene) return;
   const std::string before = state_.hasScene() && keepsCamera_ ? state_.cameraShown().name : state_.wish.camera;
@@ -517,7 +527,7 @@ void Viewer::fileLine() {
   ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x, 4.0f * ImGui::GetTextLineHeight()));
   const std::string name = state_.files[state_.file].filename().string();
   if (ImGui::SliderInt("##file", &file, 0, std::max(static_cast<int>(state_.files.size()) - 1, 1),
-                       (name + print(", %d of %zu", file + 1, state_.files.size())).c_str()))
+                       (asFormat(name) + print(", %d of %zu", file + 1, state_.files.size())).c_str()))
     state_.file = static_cast<std::size_t>(std::clamp(file, 0, static_cast<int>(state_.files.size()) - 1));
   state_.marks.item("time");
   state_.marks.text("file", name);
