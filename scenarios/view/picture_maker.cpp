@@ -129,11 +129,11 @@ struct PictureMaker::Desk {
       // The plan before the edit draws the edited scene at once; whether it still holds is found beside.
       const Plan plan = line->renderer().plan();
       held.reset();
-      const ViewedScenePointer before = std::exchange(drawnScene, scene);
       auto edited =
           std::make_unique<CameraLine>(scene->simulation, c, library, std::make_unique<CameraDrawing>(scene->simulation, c, plan, library, bodies), true);
-      if (sameAir(before->simulation, scene->simulation)) edited->renderer().takeAir(line->renderer());
-      line = std::move(edited);
+      if (sameAir(drawnScene->simulation, scene->simulation)) edited->renderer().takeAir(line->renderer());
+      line = std::move(edited);  // before the scene goes that the old one looks at
+      drawnScene = scene;
       tier = Tier::Edited;
       return;
     }
@@ -329,17 +329,17 @@ void PictureMaker::run() {
     try {
       if (!desk) desk = std::make_unique<Desk>(library_);
       bool draws = fresh;
-      if (desk->scene != wish.scene || desk->camera != wish.camera) {
+      if (desk->scene != wish.scene || desk->camera != wish.camera || (fresh && !desk->line)) {
         say("preparing", "", true);
         desk->begin(wish);
         say(awaited(), "", true);
         draws = true;
       }
-      if (desk->takeOver()) {
+      if (desk->line && desk->takeOver()) {
         say(awaited(), "", true);
         draws = true;
       }
-      if (!draws) {
+      if (!draws || !desk->line) {
         if (desk->planNext()) say(awaited(), "", true);
         continue;
       }

@@ -80,7 +80,7 @@ class MaterialPanel final : public Panel {
       curves(state, text);
       numbers(state, text);
       film(state, text);
-    } catch (const UserError& e) {
+    } catch (const std::exception& e) {
       problem_ = e.what();
     }
     saving(state, text);
@@ -168,7 +168,8 @@ class MaterialPanel final : public Panel {
     if (!edited_->has(kind_)) kind_ = CurveKind::Diffuse;
     const CurveAxis& axis = axisOf(kind_);
     const Span& span = kSpans[span_];
-    const EditedCurve& curve = edited_->curve(kind_);
+    const std::shared_ptr<const EditedCurve> held = edited_->surface().curve(kind_);  // as it is drawn, whatever becomes of it below
+    const EditedCurve& curve = *held;
     double top = axis.bounds.highest;
     if (top > 1.5) {
       // While a point is dragged the axis stays.
@@ -257,9 +258,10 @@ class MaterialPanel final : public Panel {
   }
 
   void numbers(ViewState& state, float text) {
-    const EditedCurve& curve = edited_->curve(kind_);
-    bool smooth = curve.smooth();
+    bool smooth = edited_->curve(kind_).smooth();
     if (check(state.marks, "smooth", "smooth", smooth)) edited_->setSmooth(kind_, smooth);
+    const std::shared_ptr<const EditedCurve> held = edited_->surface().curve(kind_);
+    const EditedCurve& curve = *held;
     if (point_ && *point_ < curve.points().size()) {
       const CurvePoint p = curve.points()[*point_];
       double um = p.wavelength_um, value = p.value;

@@ -25,6 +25,7 @@ struct SphereWish {
   std::vector<Illuminant> lights;                    ///< one or two
   std::vector<SphereChannel> bands;
   double temperature_K = 300.0;
+  int scene = 0;  ///< another number, other lights and bands
   std::chrono::steady_clock::time_point asked;
 };
 
@@ -91,7 +92,7 @@ class SphereDesk {
 
  private:
   void prepare(const SphereWish& wish) {
-    std::string key = print("%.6g", wish.temperature_K);
+    std::string key = print("%d %.6g", wish.scene, wish.temperature_K);
     for (const Illuminant& l : wish.lights) key += "|" + l.name;
     for (const SphereChannel& c : wish.bands) key += "/" + c.name;
     if (key == key_) return;
@@ -150,7 +151,8 @@ using SphereWork = NewestWork<SphereWish, SphereResult>;
 
 struct SphereTiles::Own {
   std::vector<Illuminant> lights;
-  const ViewedScene* lightsOf = nullptr;
+  ViewedScenePointer lightsOf;
+  int scene = 0;
   std::size_t first = 0, second = 1;
   std::string besideName;
   std::shared_ptr<const Material> beside;
@@ -182,12 +184,13 @@ bool SphereTiles::isDone() const { return own_->everAsked && !own_->work.isBusy(
 
 void SphereTiles::draw(ViewState& state, const EditedMaterial& edited, float text) {
   Own& o = *own_;
-  if (o.lights.empty() || o.lightsOf != state.asRead.get()) {
+  if (o.lights.empty() || o.lightsOf != state.asRead) {
     o.lights = illuminantsOf(findLibraries(), state.hasScene() ? &state.asRead->simulation : nullptr);
-    o.lightsOf = state.asRead.get();
+    o.lightsOf = state.asRead;
+    ++o.scene;
     const auto at = std::find_if(o.lights.begin(), o.lights.end(), [](const Illuminant& l) { return l.name == "D65"; });
-    o.first = static_cast<std::size_t>(at - o.lights.begin());
-    o.second = o.first + 1;
+    o.first = at == o.lights.end() ? 0 : static_cast<std::size_t>(at - o.lights.begin());
+    o.second = std::min(o.first + 1, o.lights.size() - 1);
   }
   ImGui::Separator();
   std::vector<std::string> names;
@@ -217,7 +220,7 @@ void SphereTiles::draw(ViewState& state, const EditedMaterial& edited, float tex
       o.problem = e.what();
     }
   }
-  const std::string key = names[o.first] + "/" + names[o.second] + "/" + o.besideName + print("/%.2f", static_cast<double>(o.temperature_K));
+  const std::string key = names[o.first] + "/" + names[o.second] + "/" + o.besideName + print("/%d/%.2f", o.scene, static_cast<double>(o.temperature_K));
   if (!o.everAsked || o.asked != edited.revision() || o.askedKey != key) {
     try {
       SphereWish wish;
@@ -225,6 +228,7 @@ void SphereTiles::draw(ViewState& state, const EditedMaterial& edited, float tex
       wish.material = edited.material();
       wish.beside = o.beside;
       wish.lights = {o.lights[o.first], o.lights[o.second]};
+      wish.scene = o.scene;
       wish.temperature_K = static_cast<double>(o.temperature_K);
       if (state.hasScene()) {
         for (const SphereChannel& c : sphereChannels(state.cameraShown().outputs))

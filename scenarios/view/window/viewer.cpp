@@ -36,6 +36,14 @@ std::string asFormat(const std::string& words) {
   return all;
 }
 
+/// The same bodies of as many surfaces, and lamps, by name.
+bool sameThings(const Simulation& a, const Simulation& b) {
+  const auto named = [](const auto& x, const auto& y) { return x.name == y.name; };
+  return std::equal(a.entities.begin(), a.entities.end(), b.entities.begin(), b.entities.end(),
+                    [](const Entity& x, const Entity& y) { return x.name == y.name && x.surfaces.size() == y.surfaces.size(); }) &&
+         std::equal(a.lights.begin(), a.lights.end(), b.lights.begin(), b.lights.end(), named);
+}
+
 /// What the picture is, and how far off.
 std::string tierText(const ShownPicture& p) {
   const std::string most = p.error >= 0.0 ? print("at most %.2g %% expected", 100.0 * p.error) : "error unknown";
@@ -118,7 +126,7 @@ Viewer::Viewer(GlfwWindow& window, const ViewWish& wish)
                 loaded->scene = readScene(file);
                 if (loaded->scene->simulation.cameras.empty())
                   throw UserError({file.file, 0, 0, -1}, "a scenario without cameras", "one to look through", "add 'cameras:'");
-              } catch (const UserError& e) {
+              } catch (const std::exception& e) {
                 loaded->scene.reset();
                 loaded->problem = e.what();
               }
@@ -193,6 +201,9 @@ void Viewer::takeLoaded() {
   state_.problem = loaded_->problem;
   if (!loaded_->scene) return;
   const std::string before = state_.hasScene() && keepsCamera_ ? state_.cameraShown().name : state_.wish.camera;
+  // What was changed by hand is known by numbers: where bodies or lamps are others, it says nothing.
+  if (state_.hasScene() && !sameThings(state_.asRead->simulation, loaded_->scene->simulation))
+    state_.hands.temperatures_K.clear(), state_.hands.lightLevels.clear();
   state_.asRead = state_.scene = loaded_->scene;
   const auto& cameras = state_.scene->simulation.cameras;
   state_.camera = 0;
