@@ -61,6 +61,7 @@ ViewedScenePointer sketchOf(const ViewedScene& scene) {
   s.commands.clear();
   s.background = Spectrum(0.0);
   s.alone = true;
+  s.shadows = false;
   for (Camera& c : s.cameras) {
     c.spectral = {};
     c.spectral.samples = kSketchSamples;

@@ -26,8 +26,8 @@ std::string temperatureKey(const std::string& camera, const std::string& layer);
 ViewedScenePointer withAccuracy(const ViewedScene& scene, double accuracy);
 /// With a material of it as another: by its place among the simulation's.
 ViewedScenePointer withMaterial(const ViewedScene& scene, std::size_t number, std::shared_ptr<const Material> material);
-/// What can be drawn of it before anything is planned: materials under the sun and their own warmth, at a few wavelengths, without air, surroundings, lamps,
-/// smoke and what is smaller than a pixel. No error is known of it.
+/// What can be drawn of it before anything is planned: materials under the sun and their own warmth, at a few wavelengths, without air, shadows, surroundings,
+/// lamps, smoke and what is smaller than a pixel. No error is known of it.
 ViewedScenePointer sketchOf(const ViewedScene& scene);
 
 /// What a material is of an entity's part, by number of both from 0; -1: none.

@@ -49,7 +49,7 @@ std::string tierText(const ShownPicture& p) {
   const std::string most = p.error >= 0.0 ? print("at most %.2g %% expected", 100.0 * p.error) : "error unknown";
   switch (p.tier) {
     case Tier::Sketch:
-      return "SKETCH: bodies in the sun without air, lamps and smoke; error unknown";
+      return "SKETCH: bodies in the sun without air, shadows, lamps and smoke; error unknown";
     case Tier::Draft:
       return "DRAFT: " + most;
     case Tier::Edited:
