@@ -91,9 +91,12 @@ void Plot::drawAxes() {
     const ImVec2 size = ImGui::CalcTextSize(t.label.c_str());
     list_->AddText(ImVec2(p.x - 0.5f * size.x, high_.y + 0.15f * text), colours::kDim, t.label.c_str());
   }
+  float labelled = -1e9f;  // where a label stands that the next must not cover
   for (const Tick& t : ticksOf(y_)) {
     const ImVec2 p = at(x_.low, t.value);
     list_->AddLine(ImVec2(low_.x, p.y), ImVec2(high_.x, p.y), colours::kLine, 0.5f);
+    if (std::abs(p.y - labelled) < text) continue;
+    labelled = p.y;
     const ImVec2 size = ImGui::CalcTextSize(t.label.c_str());
     list_->AddText(ImVec2(low_.x - size.x - 0.3f * text, p.y - 0.5f * size.y), colours::kDim, t.label.c_str());
   }
