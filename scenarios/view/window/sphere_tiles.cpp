@@ -64,30 +64,37 @@ class SphereDesk {
     const auto since = [](std::chrono::steady_clock::time_point then) {
       return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - then).count();
     };
-    auto result = std::make_shared<SphereResult>();
+    // What has not been drawn anew yet is shown as it was: a curve that is dragged waits for nothing but the first picture.
+    shown_.resize(wish.lights.size() + wish.bands.size());
+    SphereResult result;
+    const auto asIs = [&] {
+      auto now = std::make_shared<SphereResult>(result);
+      for (const SpherePixels& p : shown_)
+        if (!p.colours.empty() || !p.values.empty()) now->pictures.push_back(p);
+      return now;
+    };
     for (std::size_t l = 0; l < wish.lights.size(); ++l) {
-      SpherePixels p;
+      SpherePixels& p = shown_[l];
       p.title = "eye, " + wish.lights[l].name;
       p.colours = coloursOf(l, *wish.material);
       if (wish.beside) joinHalves(p.colours, coloursOf(l, *wish.beside));
-      result->pictures.push_back(std::move(p));
-      if (l == 0) result->took_ms = since(from), result->after_ms = since(wish.asked);
+      if (l == 0) result.took_ms = since(from), result.after_ms = since(wish.asked);
+      if (isStale()) return asIs();
     }
-    if (wish.beside) result->verdict = verdictOf(wish);
-    auto first = std::make_shared<SphereResult>(*result);
-    first->pictures.insert(first->pictures.end(), drawnBands_.begin(), drawnBands_.end());
-    publish(first);
-    drawnBands_.clear();
-    for (std::size_t b = 0; b < bands_.size(); ++b) try {
-        if (isStale()) break;
-        SpherePixels p{wish.bands[b].name + ", " + wish.lights[0].name, {}, {}, wish.bands[b].unit};
+    if (wish.beside) result.verdict = verdictOf(wish);
+    publish(asIs());
+    for (std::size_t b = 0; b < bands_.size(); ++b) {
+      if (isStale()) break;
+      SpherePixels p{wish.bands[b].name + ", " + wish.lights[0].name, {}, {}, wish.bands[b].unit};
+      try {
         p.values = bands_[b]->draw(*wish.material)[0];
         if (wish.beside) joinHalves(p.values, bands_[b]->draw(*wish.beside)[0]);
-        drawnBands_.push_back(std::move(p));
       } catch (const UserError&) {  // no data in this band: no picture of it
+        p.values.clear();
       }
-    result->pictures.insert(result->pictures.end(), drawnBands_.begin(), drawnBands_.end());
-    return result;
+      shown_[wish.lights.size() + b] = std::move(p);
+    }
+    return asIs();
   }
 
  private:
@@ -97,7 +104,7 @@ class SphereDesk {
     for (const SphereChannel& c : wish.bands) key += "/" + c.name;
     if (key == key_) return;
     key_ = key;
-    eyes_.clear(), whites_.clear(), bands_.clear(), drawnBands_.clear();
+    eyes_.clear(), whites_.clear(), bands_.clear(), shown_.clear();
     SphereView view;
     view.temperature_K = wish.temperature_K;
     const glm::dvec3 direction(0.4, 0.5, 1.0);
@@ -139,8 +146,8 @@ class SphereDesk {
   }
 
   std::vector<SphereChannel> eye_;
-  std::vector<SpherePixels> drawnBands_;
-  std::vector<double> whites_;  ///< of each light [cd/m2]
+  std::vector<SpherePixels> shown_;  ///< of each light, then of each band
+  std::vector<double> whites_;       ///< of each light [cd/m2]
   std::string key_;
   std::vector<std::unique_ptr<SpherePicture>> eyes_, bands_;
 };
