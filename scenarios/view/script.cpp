@@ -21,8 +21,8 @@ using Kind = ScriptLine::Kind;
 
 constexpr Command kCommands[] = {
     {"open", Kind::Open, 1, 1, "FILE", "another scenario"},
-    {"wait", Kind::Wait, 1, 2, "done|picture|sketch|draft|probe|sphere|'T s' [LIMIT]",
-     "until the picture is as asked; there is one; one of that kind or better; probe or sphere are ready; so long. LIMIT: seconds, 120 unless given"},
+    {"wait", Kind::Wait, 1, 2, "done|picture|sketch|draft|problem|good|probe|sphere|dial|'T s' [LIMIT]",
+     "until the picture is as asked, is there, or of that kind; a saved scenario is wrong, or good; these are ready; so long. LIMIT: seconds, else 120"},
     {"click", Kind::Click, 1, 3, "NAME [X Y]", "the middle of what has that name; of a picture a pixel, of a plot a value, else a share of its sides"},
     {"drag", Kind::Drag, 5, 6, "NAME X Y X2 Y2 [STEPS]", "with the left button from one such place to another"},
     {"scroll", Kind::Scroll, 2, 4, "NAME BY [X Y]", "the wheel"},

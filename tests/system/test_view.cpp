@@ -123,12 +123,13 @@ TEST(View, SavedScenariosLoadThemselves) {
   std::string broken = kScene;
   broken.replace(broken.find("field_of_view"), 13, "field_of_wiev");
   const std::string bad = folder.put("bad.txt", broken), good = folder.put("good.txt", kScene);
-  // Files change while the script waits: by a shell beside it.
-  const std::string changes = "(sleep 4; cp " + bad + " " + scene + "; sleep 3; cp " + good + " " + scene + ") & ";
-  const std::string script =
-      folder.put("s.txt",
-                 "wait done\nprint problem\nwait 6\nprint problem\nprint tier\nwait 4\nwait done\nprint problem\nclick tab:scene\nwait 0.1\n"
-                 "drag field_of_view 0.5 0.5 0.7 0.5\nwait 0.3\nprint changes\nkey ctrl+s\nwait 1\nwait done\nprint message\n");
+  // Files change when the script says so, by pictures that it writes, however slow the machine is.
+  const auto after = [&](const char* picture) { return "while [ ! -e " + (folder.path() / picture).string() + " ]; do sleep 0.1; done; "; };
+  const std::string changes = "(" + after("opened.png") + "cp " + bad + " " + scene + "; " + after("broken.png") + "cp " + good + " " + scene + ") & ";
+  const std::string script = folder.put(
+      "s.txt",
+      "wait done\nprint problem\nscreenshot opened.png\nwait problem\nwait 0.3\nprint problem\nprint tier\nscreenshot broken.png\nwait good\nwait done\n"
+      "print problem\nclick tab:scene\nwait 0.1\ndrag field_of_view 0.5 0.5 0.7 0.5\nwait 0.3\nprint changes\nkey ctrl+s\nwait 1\nwait done\nprint message\n");
   const Result r = run(changes + "cd " + folder.path().string() + " && PITVIPER_HOME=" + PITVIPER_SOURCE_DIR + " xvfb-run -a -s '-screen 0 1280x800x24' " +
                        PITVIPER_PROGRAM + " view " + scene + " --width 1200 --height 760 --script " + script);
   EXPECT_EQ(r.code, 0) << r.output;
@@ -164,10 +165,12 @@ TEST(View, FramesAndWindowsOfAPixel) {
 TEST(View, DisplaysMayGo) {
   if (!hasDisplay()) GTEST_SKIP() << "no xvfb-run with xauth (packages xvfb, xauth)";
   const TemporaryFolder folder;
-  const std::string script = folder.put("s.txt", "wait done\nwait 60\n");
-  const Result r =
-      run("Xvfb :83 -screen 0 800x600x24 & server=$!; sleep 1; (sleep 5; kill -9 $server) & DISPLAY=:83 PITVIPER_HOME=" + std::string(PITVIPER_SOURCE_DIR) +
-          " timeout 50 " + PITVIPER_PROGRAM + " view " + folder.put("a.yaml", kScene) + " --script " + script);
+  const std::string script = folder.put("s.txt", "wait done\nscreenshot drawn.png\nwait 100\n"), drawn = (folder.path() / "drawn.png").string();
+  const Result r = run("cd " + folder.path().string() +
+                       " && Xvfb :83 -screen 0 800x600x24 & server=$!; while [ ! -e /tmp/.X11-unix/X83 ]; do sleep 0.1; done; (while [ ! -e " + drawn +
+                       " ]; do sleep 0.1; done; kill -9 $server) & cd " + folder.path().string() + " && DISPLAY=:83 PITVIPER_HOME=" + PITVIPER_SOURCE_DIR +
+                       " " + PITVIPER_PROGRAM + " view " + folder.put("a.yaml", kScene) + " --script " + script);
+  EXPECT_TRUE(std::filesystem::exists(drawn)) << r.output;
   EXPECT_EQ(r.code, 1) << r.output;
 }
 

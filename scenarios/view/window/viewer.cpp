@@ -310,12 +310,15 @@ bool Viewer::isReached(const std::string& what, const Location& where) const {
   if (what == "done")
     return (state_.isDone && state_.picture && !loader_.isBusy()) || (!state_.problem.empty() && !loader_.isBusy()) || !state_.status.error.empty();
   if (what == "done" && !state_.files.empty()) return state_.isDone && askedFile_ == state_.files[state_.file];
+  if (what == "problem") return !state_.problem.empty();
+  if (what == "good") return state_.problem.empty() && !loader_.isBusy();
   if (what == "picture") return state_.picture != nullptr;
   if (what == "sketch") return at(Tier::Sketch);
   if (what == "draft") return at(Tier::Draft);
   for (const auto& panel : panels_)
     if (const auto reached = panel->isReached(what, state_)) return *reached;
-  throw UserError(where, "nothing is waited for by '" + what + "'", "done, picture, sketch, draft, probe, sphere, dial, or a time", "see pitviper view --help");
+  throw UserError(where, "nothing is waited for by '" + what + "'", "done, picture, sketch, draft, problem, good, probe, sphere, dial, or a time",
+                  "see pitviper view --help");
 }
 
 void Viewer::writePicture(const std::string& file) const {
