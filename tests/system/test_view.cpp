@@ -166,10 +166,11 @@ TEST(View, DisplaysMayGo) {
   if (!hasDisplay()) GTEST_SKIP() << "no xvfb-run with xauth (packages xvfb, xauth)";
   const TemporaryFolder folder;
   const std::string script = folder.put("s.txt", "wait done\nscreenshot drawn.png\nwait 100\n"), drawn = (folder.path() / "drawn.png").string();
+  // The server says by its number that it listens.
   const Result r = run("cd " + folder.path().string() +
-                       " && Xvfb :83 -screen 0 800x600x24 & server=$!; while [ ! -e /tmp/.X11-unix/X83 ]; do sleep 0.1; done; (while [ ! -e " + drawn +
-                       " ]; do sleep 0.1; done; kill -9 $server) & cd " + folder.path().string() + " && DISPLAY=:83 PITVIPER_HOME=" + PITVIPER_SOURCE_DIR +
-                       " " + PITVIPER_PROGRAM + " view " + folder.put("a.yaml", kScene) + " --script " + script);
+                       " && { Xvfb -displayfd 1 -screen 0 800x600x24 > number & server=$!; while [ ! -s number ]; do sleep 0.1; done; (while [ ! -e " + drawn +
+                       " ]; do sleep 0.1; done; kill $server) & DISPLAY=:$(cat number) PITVIPER_HOME=" + PITVIPER_SOURCE_DIR + " " + PITVIPER_PROGRAM +
+                       " view " + folder.put("a.yaml", kScene) + " --script " + script + "; }");
   EXPECT_TRUE(std::filesystem::exists(drawn)) << r.output;
   EXPECT_EQ(r.code, 1) << r.output;
 }

@@ -24,6 +24,9 @@ extern "C" struct _XDisplay* glfwGetX11Display(void);
 namespace pitviper {
 namespace {
 
+/// Of a window's side.
+constexpr int kMostPixels = 16384;
+
 std::string glfwSays() {
   const char* text = nullptr;
   glfwGetError(&text);
@@ -132,7 +135,9 @@ bool GlfwWindow::listen(double wait_s) {
 void GlfwWindow::beginFrame() {
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
+  refuseGone();  // a display that is gone has no sizes
   ImGuiIO& io = ImGui::GetIO();
+  io.DisplaySize = ImVec2(std::max(io.DisplaySize.x, 1.0f), std::max(io.DisplaySize.y, 1.0f));
   io.MousePos = own_->mouse;
   for (std::size_t b = 0; b < 3; ++b) io.MouseDown[b] = own_->isDown[b] || own_->wasPressed[b];
   own_->wasPressed = {};
@@ -141,9 +146,7 @@ void GlfwWindow::beginFrame() {
 
 void GlfwWindow::endFrame() {
   ImGui::Render();
-  int width = 0, height = 0;
-  glfwGetFramebufferSize(own_->window, &width, &height);
-  glViewport(0, 0, width, height);
+  glViewport(0, 0, width(), height());
   const ImVec4 back = ImGui::GetStyleColorVec4(ImGuiCol_WindowBg);
   glClearColor(back.x, back.y, back.z, 1.0f);
   glClear(GL_COLOR_BUFFER_BIT);
@@ -152,8 +155,12 @@ void GlfwWindow::endFrame() {
   glfwSwapBuffers(own_->window);
 }
 
-bool GlfwWindow::isClosed() {
+void GlfwWindow::refuseGone() const {
   if (const std::string gone = own_->errors.fatal(); !gone.empty()) throw std::runtime_error("view: " + gone);
+}
+
+bool GlfwWindow::isClosed() {
+  refuseGone();
   return glfwWindowShouldClose(own_->window) == GLFW_TRUE;
 }
 
@@ -163,16 +170,17 @@ void GlfwWindow::setTitle(const std::string& title) { glfwSetWindowTitle(own_->w
 
 void GlfwWindow::resize(int width, int height) { glfwSetWindowSize(own_->window, width, height); }
 
+// Of a display that has just gone sizes are any number.
 int GlfwWindow::width() const {
   int width = 0, height = 0;
   glfwGetFramebufferSize(own_->window, &width, &height);
-  return width;
+  return std::clamp(width, 0, kMostPixels);
 }
 
 int GlfwWindow::height() const {
   int width = 0, height = 0;
   glfwGetFramebufferSize(own_->window, &width, &height);
-  return height;
+  return std::clamp(height, 0, kMostPixels);
 }
 
 void GlfwWindow::keepPixels(bool keep) { own_->keeps = keep; }

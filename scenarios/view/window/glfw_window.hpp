@@ -26,6 +26,7 @@ class GlfwWindow {
 
   /// Takes what mouse and keys have done, waiting for it at most so long. Whether they did anything lately.
   bool listen(double wait_s);
+  /// Throws std::runtime_error where the display is gone.
   void beginFrame();
   void endFrame();
   /// Throws std::runtime_error where the display is gone.
@@ -52,6 +53,7 @@ class GlfwWindow {
 
  private:
   void readPixels();
+  void refuseGone() const;
   struct Own;
   std::unique_ptr<Own> own_;
   float scale_ = 1.0f;
