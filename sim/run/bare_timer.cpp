@@ -1,5 +1,6 @@
 #include "sim/run/bare_timer.hpp"
 
+
 #include "sim/stream/clock/wall_clock.hpp"
 
 namespace pitviper {

@@ -29,8 +29,8 @@ double faultsOf(const ProcessUse& now, const ProcessUse& before) {
 }  // namespace
 
 std::string nameOf(LateCause cause) {
-  static const char* const kNames[kLateCauses] = {"sinks",           "plans made beside", "the compiler", "page faults", "others had the processor",
-                                                  "the tick before", "the picture itself"};
+  static const char* const kNames[kLateCauses] = {"sinks", "plans made beside", "the compiler", "page faults", "others had the processor", "the tick before",
+                                                  "the picture itself"};
   return kNames[static_cast<std::size_t>(cause)];
 }
 
@@ -45,13 +45,13 @@ const LateCause* LateCauses::look(const Tick& tick) {
     return nullptr;
   }
   const double much = 0.5 * late_ns;
-  found_ = static_cast<double>(tick.handing_ns) >= much                  ? LateCause::Sinks
-           : tick.plansBeside                                            ? LateCause::Planner
-           : tick.use.programs > before.programs                         ? LateCause::Compiler
-           : faults - usualFaults_ >= much                               ? LateCause::PageFaults
-           : waited - usualWait_ns_ >= much                              ? LateCause::Processor
-           : static_cast<double>(tick.begun_ns - tick.begins_ns) >= much ? LateCause::Before
-                                                                         : LateCause::Picture;
+  found_ = static_cast<double>(tick.handing_ns) >= much                       ? LateCause::Sinks
+           : tick.plansBeside                                                 ? LateCause::Planner
+           : tick.use.programs > before.programs                              ? LateCause::Compiler
+           : faults - usualFaults_ >= much                                    ? LateCause::PageFaults
+           : waited - usualWait_ns_ >= much                                   ? LateCause::Processor
+           : static_cast<double>(tick.begun_ns - tick.begins_ns) >= much      ? LateCause::Before
+                                                                              : LateCause::Picture;
   ++counts_[static_cast<std::size_t>(found_)];
   return &found_;
 }

@@ -9,9 +9,9 @@ namespace pitviper {
 
 /// In the order in which they are asked for.
 enum class LateCause {
-  Sinks,     ///< frames were handed over meanwhile
-  Planner,   ///< plans, tables and programs were made beside
-  Compiler,  ///< programs were made
+  Sinks,      ///< frames were handed over meanwhile
+  Planner,    ///< plans, tables and programs were made beside
+  Compiler,   ///< programs were made
   PageFaults,
   Processor,  ///< others had it: other processes, or other threads of this one
   Before,     ///< it could only be begun when the tick before was drawn
@@ -60,7 +60,7 @@ class ProcessWatch {
 
  private:
   struct Thread {
-    int file = -1;                ///< its schedstat
+    int file = -1;               ///< its schedstat
     std::int64_t waited_ns = -1;  ///< -1: not read yet
   };
   std::map<int, Thread> threads_;

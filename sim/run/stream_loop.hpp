@@ -50,12 +50,12 @@ struct StreamReport {
   Durations answer;  ///< lockstep: from a step's arrival to its frames being out, less drawing
   Durations bareTimer;
   std::uint64_t bareTimerLate = 0;
-  std::vector<RungUse> rungs;                       ///< of cameras with more than one
-  std::uint64_t turns = 0;                          ///< of the dial
-  std::string refused;                              ///< of the thread's wishes
+  std::vector<RungUse> rungs;  ///< of cameras with more than one
+  std::uint64_t turns = 0;     ///< of the dial
+  std::string refused;         ///< of the thread's wishes
   std::array<std::uint64_t, kLateCauses> causes{};  ///< of frames that were not there when they were due
-  std::uint64_t drafts = 0;                         ///< ticks of which a camera was drawn by a draft
-  std::string whyDrafts;                            ///< why all were, where the driver could not make what was asked for
+  std::uint64_t drafts = 0;    ///< ticks of which a camera was drawn by a draft
+  std::string whyDrafts;       ///< why all were, where the driver could not make what was asked for
   double seconds = 0.0;
   std::int64_t memoryBefore_kB = 0, memoryAfter_kB = 0;  ///< resident: after a tenth of the ticks, or 100; at the end
   std::uint64_t unaccounted() const;                     ///< ticks of cameras that became nothing: never, or the program is wrong
