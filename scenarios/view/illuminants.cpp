@@ -20,14 +20,14 @@ Spectrum named(const std::string& words, const Libraries& libraries) {
 
 std::vector<Illuminant> illuminantsOf(const Libraries& libraries, const Simulation* scenario) {
   std::vector<Illuminant> all;
-  if (scenario && scenario->sun) all.push_back({"sun of the scenario", scenario->sun->irradiance, {}});
-  all.push_back({"sun, 5772 K", Spectrum(Spectrum::BlackBody{5772.0, kSun_sr}), {}});
-  all.push_back({"D65", named("cie_d65", libraries), {}});
-  all.push_back({"A", named("cie_a", libraries), {}});
-  all.push_back({"sodium", named("sodium_low_pressure", libraries), {}});
+  if (scenario && scenario->sun) all.push_back({"sun of the scenario", scenario->sun->irradiance});
+  all.push_back({"sun, 5772 K", Spectrum(Spectrum::BlackBody{5772.0, kSun_sr})});
+  all.push_back({"D65", named("cie_d65", libraries)});
+  all.push_back({"A", named("cie_a", libraries)});
+  all.push_back({"sodium", named("sodium_low_pressure", libraries)});
   if (scenario)
     for (const PointLight& l : scenario->lights)
-      if (l.lamp < 0) all.push_back({"lamp " + l.name, l.intensity * (1.0 / (kLampDistance_m * kLampDistance_m)), {}});
+      if (l.lamp < 0) all.push_back({"lamp " + l.name, l.intensity * (1.0 / (kLampDistance_m * kLampDistance_m))});
   return all;
 }
 

@@ -9,8 +9,7 @@ namespace pitviper {
 
 struct Illuminant {
   std::string name;
-  Spectrum irradiance;              ///< [W/(m2 um)] on a plane that faces it
-  std::optional<Spectrum> ambient;  ///< radiance from all around [W/(m2 sr um)]
+  Spectrum irradiance;  ///< [W/(m2 um)] on a plane that faces it
 };
 
 /// Sun, D65, A and sodium, and of a scenario its own sun and lamps, these at 10 m.

@@ -24,7 +24,6 @@ struct PictureWish {
   std::size_t camera = 0;
   double time_s = 0.0;
   HandChanges hands;
-  bool followsAlong = true;  ///< frames come one after another: detectors and followers remember
   bool operator==(const PictureWish&) const = default;
 };
 

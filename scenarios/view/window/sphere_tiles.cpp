@@ -109,10 +109,9 @@ class SphereDesk {
     view.temperature_K = wish.temperature_K;
     const glm::dvec3 direction(0.4, 0.5, 1.0);
     for (const Illuminant& l : wish.lights) whites_.push_back(whiteUnder(l.irradiance));
-    for (const Illuminant& l : wish.lights) eyes_.push_back(std::make_unique<SpherePicture>(eye_, SphereLight{l.irradiance, direction, l.ambient}, view));
+    for (const Illuminant& l : wish.lights) eyes_.push_back(std::make_unique<SpherePicture>(eye_, SphereLight{l.irradiance, direction, {}}, view));
     for (const SphereChannel& c : wish.bands)
-      bands_.push_back(
-          std::make_unique<SpherePicture>(std::vector{c}, SphereLight{lightIn(c, wish.lights[0].irradiance), direction, wish.lights[0].ambient}, view));
+      bands_.push_back(std::make_unique<SpherePicture>(std::vector{c}, SphereLight{lightIn(c, wish.lights[0].irradiance), direction, {}}, view));
   }
 
   /// A light that is not told in a band has none there.

@@ -62,6 +62,7 @@ class Viewer {
   std::uint64_t countedPicture_ = 0;
   double countedFrom_s_ = 0.0;
   int countedFrames_ = 0;
+  double owed_s_ = 0.0;  ///< of the scenario's time, while it is played
   bool showsHelp_ = false, shoots_ = false, keepsCamera_ = false;
   ViewedScenePointer askedScene_, askedFrom_;
   double askedAccuracy_ = 0.0;
