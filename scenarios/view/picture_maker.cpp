@@ -10,6 +10,7 @@
 
 #include "scenarios/view/plan_beside.hpp"
 #include "sim/plan/plan.hpp"
+#include "sim/plan/plan_cache.hpp"
 #include "sim/run/camera_line.hpp"
 #include "sim/run/drawings_beside.hpp"
 
@@ -164,7 +165,7 @@ struct PictureMaker::Desk {
   void takePlan(Plan plan) {
     tier = Tier::Asked;
     held = plan.predictedError;
-    if (plan.fingerprint == line->renderer().plan().fingerprint) return;
+    if (drawAlike(plan, line->renderer().plan())) return;
     held.reset();
     auto asked = std::make_unique<CameraDrawing>(scene->simulation, cameraOf(*scene), std::move(plan), library, bodies);
     line = std::make_unique<CameraLine>(scene->simulation, cameraOf(*scene), library, std::move(asked), false);

@@ -110,6 +110,14 @@ std::string writePlanned(const Plan& plan) {
 
 std::string planFingerprint(const Plan& plan) { return digitsOf(contentKey(writePlanned(plan))); }
 
+bool drawAlike(const Plan& a, const Plan& b) {
+  Plan as = a;
+  as.predictedError = b.predictedError;
+  as.parts = b.parts;
+  as.lines = b.lines;
+  return writePlanned(as) == writePlanned(b);
+}
+
 bool readPlanned(const std::string& text, Plan& into) {
   const size_t line = text.find('\n');
   if (line == std::string::npos || text.back() != '\n' || line + 1 >= text.size()) return false;

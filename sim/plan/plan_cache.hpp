@@ -15,6 +15,9 @@ ContentKey planKey(const Simulation& simulation, const Eye& eye, bool isForetold
 /// A fingerprint of the content of a plan, 32 hexadecimal digits.
 std::string planFingerprint(const Plan& plan);
 
+/// Whether drawing takes the same from two plans of a camera, whatever each is expected to lose.
+bool drawAlike(const Plan& a, const Plan& b);
+
 /// What a planner adds to an outline (makePlan's plan), as text that reads back to the same numbers; `into` is unchanged where it cannot be read.
 std::string writePlanned(const Plan& plan);
 bool readPlanned(const std::string& text, Plan& into);
