@@ -28,11 +28,6 @@ Simulation painted(const std::string& paint) {
       "     channels: [{name: mw, response: {band: [3.6 um, 4.8 um]}}]}\n");
 }
 
-struct Drawn {
-  CameraImage image;
-  Plan plan;
-};
-
 TEST(EditedScene, IsDrawnByThePlanAndTheAirBefore) {
   needContext();
   const Simulation before = painted("0.3], [4, 0.3], [5, 0.25"), after = painted("0.3], [4, 0.33], [5, 0.25");
