@@ -1,6 +1,5 @@
 #pragma once
 // The samples of a sweep from its design, one by one.
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>

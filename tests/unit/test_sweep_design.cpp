@@ -560,7 +560,7 @@ TEST_F(SweepFile, MistakesAreToldWithTheirPlaces) {
        "a size of 0 pixels"},
       {"samples: 2\nvary: [{name: a, key: a, uniform: [0, 1]}]\nmeasures: [{name: a, statistic: mean, layer: l}]\n", "5:12", "two columns are called 'a'"},
       {"samples: 2\nvary: [{name: a, key: a, uniform: [0, 1]}]\nmeasures: [{python: n.py, function: f, names: [m]}]\n", "5:21", "there is no file 'n.py'"},
-      {"samples: 2\nvary: [{name: a, key: a, uniform: [0, 1]}]\nmeasures: [{python: m.py, function: f, names: [m, n], units: [K]}]\n", "5:61",
+      {"samples: 2\nvary: [{name: a, key: a, uniform: [0, 1]}]\nmeasures: [{python: m.py, function: f, names: [m, n], units: [K]}]\n", "5:62",
        "1 units of 2 names"},
   };
   for (const Mistake& m : mistakes) {
