@@ -71,7 +71,13 @@ Distribution readNormal(const Record& factor, UnitOfFactor& unit) {
   const double mean = unit.read(n.value("mean")), sigma = unit.read(n.value("sigma"));
   if (sigma <= 0.0) throw UserError(n.where("sigma"), "sigma is " + n.value("sigma").text, "a standard deviation above 0", "remove the factor, or widen it");
   const Value* within = factor.find("within");
-  if (!within) return Distribution::normal(mean, sigma);
+  if (!within) {
+    const Distribution whole = Distribution::normal(mean, sigma);
+    // The outermost shares that are drawn.
+    if (!std::isfinite(whole.quantile(0x1p-53)) || !std::isfinite(whole.quantile(1.0 - 0x1p-53)))
+      throw UserError(n.where("sigma"), "draws of this normal distribution are beyond what a number holds", "values within 1e308", "correct mean and sigma");
+    return whole;
+  }
   const auto [low, high] = readFactorBounds(*within, "within", unit);
   const double share = normalShare(mean, sigma, low, high);
   if (share < kLeastShare)

@@ -79,8 +79,8 @@ class SweepReader {
     sweep_.file = file_.string();
     const Record r(tree, sweepTable());
     r.fill(sweep_);
-    if (sweep_.name.find('/') != std::string::npos || sweep_.name == "." || sweep_.name == "..")
-      throw UserError(r.where("sweep"), "a sweep cannot be called " + tokenOf(sweep_.name), "a name that a file can have", "write it without '/'");
+    if (sweep_.name.find_first_of("/\n\t") != std::string::npos || sweep_.name == "." || sweep_.name == "..")
+      throw UserError(r.where("sweep"), "a sweep cannot be called " + tokenOf(sweep_.name), "a name that a file can have", "write it in one line without '/'");
     readScenarioName(r);
     readFactors(r.value("vary"));
     readSets(r);

@@ -514,6 +514,7 @@ TEST_F(SweepFile, MistakesAreToldWithTheirPlaces) {
       {"samples: 2\nvary: [{name: a, key: a, choice: [x, y], weights: [2, -1]}]\n", "4:55", "the weight -1; expected 0 or more"},
       {"samples: 2\nvary: [{name: a, key: a, choice: [x, x]}]\n", "4:38", "the choice 'x' is there twice"},
       {"samples: 2\nvary: [{name: a, key: a, grid: {from: 1 m, to: 1 m, steps: 3}}]\n", "4:48", "the grid goes from 1 m to itself"},
+      {"samples: 2\nvary: [{name: a, key: a, normal: {mean: 1e308, sigma: 1e308}}]\n", "4:55", "beyond what a number holds"},
       // Names and paths.
       {"samples: 2\nvary: [{name: a, key: a, uniform: [0, 1]}, {name: a, key: b, uniform: [0, 1]}]\n", "4:51", "two factors are called 'a' (sweep.yaml:4:15)"},
       {"samples: 2\nvary: [{name: 2a, key: a, uniform: [0, 1]}]\n", "4:15", "a column cannot be called '2a'"},
@@ -571,6 +572,7 @@ TEST_F(SweepFile, MistakesAreToldWithTheirPlaces) {
     EXPECT_NE(message.find("; expected "), std::string::npos) << message;
     EXPECT_NE(message.find("; fix: "), std::string::npos) << message;
   }
+  EXPECT_TRUE(refusal("sweep: a/b\nscenario: scene.yaml\nvary: [1]\n").starts_with("sweep.yaml:1:8: a sweep cannot be called 'a/b'"));
   EXPECT_EQ(refusal("sweep: s\nscenario: gone.yaml\nsamples: 1\nvary: [{name: a, key: a, uniform: [0, 1]}]\n")
                 .rfind("sweep.yaml:2:11: there is no file 'gone.yaml'", 0),
             0u);
