@@ -111,14 +111,16 @@ void drawMeasure(HtmlPage& page, const SweepIdentity& sweep, const std::vector<S
     indices.push_back({name, s.first, s.firstInterval, s.total, s.totalInterval});
   }
   const MeasureColumn measure{m.name, m.unit};
-  const double upper = barsHeight(correlations), lines = std::ceil(static_cast<double>(factors.size()) / kPanelsAcross);
-  SvgDrawing drawing(kPanelsAcross * kSweepPanelWidth, upper + lines * kSweepPanelHeight);
+  const std::size_t before = m.sobol ? 3 : 2;  // panels
+  const double upper = barsHeight(correlations), lines = std::ceil(static_cast<double>(before + factors.size()) / kPanelsAcross);
+  SvgDrawing drawing(kPanelsAcross * kSweepPanelWidth, upper + (lines - 1.0) * kSweepPanelHeight);
   drawHistogram({drawing, 0.0, 0.0}, measure, values);
   if (m.sobol) drawBars({drawing, kSweepPanelWidth, 0.0, upper}, "first-order index", "total", indices, 0.0);
-  drawBars({drawing, (m.sobol ? 2.0 : 1.0) * kSweepPanelWidth, 0.0, upper}, "rank correlation", "", correlations, -1.0);
+  drawBars({drawing, static_cast<double>(before - 1) * kSweepPanelWidth, 0.0, upper}, "rank correlation", "", correlations, -1.0);
   for (std::size_t i = 0; i < factors.size(); ++i) {
-    const double across = static_cast<double>(i % kPanelsAcross), down = static_cast<double>(i / kPanelsAcross);
-    drawScatter({drawing, across * kSweepPanelWidth, upper + down * kSweepPanelHeight}, sweep.factors[i], measure, factors[i], values, mostDots);
+    const double across = static_cast<double>((before + i) % kPanelsAcross), line = static_cast<double>((before + i) / kPanelsAcross);
+    const double top = line > 0.0 ? upper + (line - 1.0) * kSweepPanelHeight : 0.0;
+    drawScatter({drawing, across * kSweepPanelWidth, top}, sweep.factors[i], measure, factors[i], values, mostDots);
   }
   page.drawing(drawing.svg(m.name + " against each factor"),
                "Red: the median, and 5 and 95 %. Thin lines over bars: 95 % intervals." +

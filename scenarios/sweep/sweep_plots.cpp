@@ -14,6 +14,8 @@ using Anchor = SvgDrawing::Anchor;
 /// Of a panel, around its frame: for numbers at the left, for words of the vertical axis above, for both of the horizontal one below.
 constexpr double kLeft = 50.0, kRight = 12.0, kAbove = 24.0, kBelow = 40.0;
 constexpr double kNames = 118.0, kRow = 17.0, kHalfText = 4.0;
+/// Indices of too few rows go anywhere; bars end here.
+constexpr double kFarthestBar = 1.5;
 constexpr std::size_t kNameCharacters = 18, kTitleCharacters = 48, kWordCharacters = 44;
 /// Okabe and Ito's blue, its pale sister, and their vermilion.
 constexpr const char *kBlue = "#0072b2", *kPale = "#8cc4e6", *kRed = "#d55e00", *kGrid = "#e4e4e4", *kFrame = "#6e6e6e", *kInk = "#282828";
@@ -109,12 +111,13 @@ void drawBars(const SweepPanel& panel, const std::string& title, const std::stri
   double high = 1.0;
   for (const SweepBar& b : bars)
     for (double v : {b.value, b.interval.low, b.interval.high, b.second, b.secondInterval.low, b.secondInterval.high})
-      if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+      if (std::isfinite(v)) low = std::clamp(v, -kFarthestBar, low), high = std::clamp(v, high, kFarthestBar);
   const PlotAxis axis = axisBetween(low, high);
+  const auto x = [&](double v) { return frame.x(std::clamp(axis.place(v), 0.0, 1.0)); };
   frame.across(axis, second.empty() ? title : title + "; pale: " + second);
   const auto one = [&](double value, const Interval& interval, double y, double height, const char* colour) {
     if (!std::isfinite(value)) return;
-    const double from = frame.x(axis.place(std::min(value, 0.0))), to = frame.x(axis.place(std::max(value, 0.0)));
+    const double from = x(std::min(value, 0.0)), to = x(std::max(value, 0.0));
     frame.drawing.bar(from, y - 0.5 * height, to - from, height, colour);
     if (std::isfinite(interval.low + interval.high)) frame.drawing.line(frame.x(axis.place(interval.low)), y, frame.x(axis.place(interval.high)), y, kInk, 1.2);
   };
@@ -127,8 +130,7 @@ void drawBars(const SweepPanel& panel, const std::string& title, const std::stri
     if (two) one(b.second, b.secondInterval, y + 0.2 * row, 0.36 * row, kPale);
     frame.drawing.text(frame.left - 6.0, y + kHalfText, shortened(b.factor, kNameCharacters), Anchor::End);
   }
-  const double zero = frame.x(axis.place(0.0));
-  frame.drawing.line(zero, frame.top, zero, frame.bottom, kFrame);
+  frame.drawing.line(x(0.0), frame.top, x(0.0), frame.bottom, kFrame);
 }
 
 void drawScatter(const SweepPanel& panel, const Factor& factor, const MeasureColumn& measure, const std::vector<double>& x, const std::vector<double>& y,

@@ -33,7 +33,7 @@ struct SweepBar {
 /// Height that a panel of bars takes [pixels].
 double barsHeight(const std::vector<SweepBar>& bars);
 
-/// The largest on top; from -1 or 0 to 1, and farther where a bar goes farther. `title` tells what they are, `second` what the paler ones are.
+/// The largest on top; from -1 or 0 to 1, and farther, to 1.5, where a bar goes farther. `title` tells what they are, `second` what the paler ones are.
 void drawBars(const SweepPanel& panel, const std::string& title, const std::string& second, std::vector<SweepBar> bars, double low);
 
 /// A dot for each sample, `mostDots` at most, evenly taken from all. Choices lie side by side, each spread out by the sample's number.

@@ -115,8 +115,8 @@ TEST(SweepPage, OfFewSamplesOrMany) {
     writeSweepPage(file, sweep, rowsOf(sweep), true);
     const std::string page = readWholeFile(file, {}, {});
     EXPECT_EQ(illFormed(page.substr(page.find("<body>"), page.find("</html>") - page.find("<body>"))), "") << samples;
-    if (samples == 0) EXPECT_GT(countOf(page, "nothing to draw"), 0u);
-    if (samples == 2500) EXPECT_GT(countOf(page, "Of 2472 samples 2000 are drawn as dots."), 0u);
+    EXPECT_EQ(countOf(page, "nothing to draw") > 0, samples == 0);
+    EXPECT_EQ(countOf(page, "Of 2472 samples 2000 are drawn as dots.") > 0, samples == 2500);
   }
   const MayReplace never = [](const std::filesystem::path&) { throw UserError({}, "it stays"); };
   EXPECT_THROW(writeSweepPage(file, aSweep(0), {}, false, never), UserError);
