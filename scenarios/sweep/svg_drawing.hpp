@@ -25,6 +25,6 @@ class SvgDrawing {
 };
 
 /// A text's beginning and an ellipsis where it has more than `most` characters, at least 2 (of UTF-8).
-std::string shortened(const std::string& text, std::size_t most);
+std::string shortenedText(const std::string& text, std::size_t most);
 
 }  // namespace pitviper

@@ -8,14 +8,14 @@ namespace pitviper {
 namespace {
 
 /// By RFC 4180: in quotes where it has to be.
-std::string cellOf(const std::string& text) {
+std::string csvCell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == text.npos) return text;
   std::string quoted = "\"";
   for (char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
   return quoted + "\"";
 }
 
-std::string headOf(const std::string& name, const std::string& unit) { return cellOf(name + " [" + (unit.empty() ? "1" : unit) + "]"); }
+std::string csvHead(const std::string& name, const std::string& unit) { return csvCell(name + " [" + (unit.empty() ? "1" : unit) + "]"); }
 
 }  // namespace
 
@@ -31,19 +31,19 @@ std::string numberThatReadsBack(double value) {
 
 std::string csvOf(const SweepIdentity& identity, std::vector<SweepRow> rows) {
   std::sort(rows.begin(), rows.end(), [](const SweepRow& a, const SweepRow& b) { return a.sample < b.sample; });
-  const std::vector<MeasureColumn> columns = columnsOf(identity);
+  const std::vector<MeasureColumn> columns = measureColumns(identity);
   std::string csv = "sample,seed";
-  for (const Factor& f : identity.factors) csv += "," + (f.choices.empty() ? headOf(f.name, f.unit) : cellOf(f.name));
-  for (const MeasureColumn& c : columns) csv += "," + headOf(c.name, c.unit);
+  for (const Factor& f : identity.factors) csv += "," + (f.choices.empty() ? csvHead(f.name, f.unit) : csvCell(f.name));
+  for (const MeasureColumn& c : columns) csv += "," + csvHead(c.name, c.unit);
   csv += ",why\n";
   for (const SweepRow& r : rows) {
     csv += std::to_string(r.sample) + "," + std::to_string(r.seed);
     for (std::size_t i = 0; i < identity.factors.size(); ++i) {
       const Factor& f = identity.factors[i];
-      csv += "," + (f.choices.empty() ? numberThatReadsBack(r.factors.at(i)) : cellOf(wordOf(f, r.factors.at(i))));
+      csv += "," + (f.choices.empty() ? numberThatReadsBack(r.factors.at(i)) : csvCell(choiceWord(f, r.factors.at(i))));
     }
     for (std::size_t i = 0; i < columns.size(); ++i) csv += "," + (r.measures.empty() && !r.why.empty() ? "" : numberThatReadsBack(r.measures.at(i)));
-    csv += "," + cellOf(r.why) + "\n";
+    csv += "," + csvCell(r.why) + "\n";
   }
   return csv;
 }

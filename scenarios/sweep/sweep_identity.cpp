@@ -27,15 +27,15 @@ void refuseUnprintable(const std::string& text, const Location& where, const std
 
 }  // namespace
 
-std::vector<MeasureColumn> columnsOf(const SweepIdentity& identity) {
+std::vector<MeasureColumn> measureColumns(const SweepIdentity& identity) {
   std::vector<MeasureColumn> columns;
   for (const Measure& m : identity.measures)
     for (std::size_t i = 0; i < m.names.size(); ++i) columns.push_back({m.names[i], i < m.units.size() ? m.units[i] : ""});
   return columns;
 }
 
-void setUnits(SweepIdentity& identity, const std::vector<std::string>& units) {
-  if (units.size() != columnsOf(identity).size()) throw std::invalid_argument("setUnits: a unit for each column");
+void setMeasureUnits(SweepIdentity& identity, const std::vector<std::string>& units) {
+  if (units.size() != measureColumns(identity).size()) throw std::invalid_argument("setMeasureUnits: a unit for each column");
   std::size_t column = 0;
   for (Measure& m : identity.measures) {
     m.units.resize(m.names.size());
@@ -44,10 +44,10 @@ void setUnits(SweepIdentity& identity, const std::vector<std::string>& units) {
   }
 }
 
-const std::string& wordOf(const Factor& choice, double value) {
+const std::string& choiceWord(const Factor& choice, double value) {
   // Written so that a NaN is refused.
   if (!(value >= 0.0 && value < static_cast<double>(choice.choices.size())) || value != static_cast<double>(static_cast<std::size_t>(value)))
-    throw std::invalid_argument("wordOf: '" + choice.name + "' has no such choice");
+    throw std::invalid_argument("choiceWord: '" + choice.name + "' has no such choice");
   return choice.choices[static_cast<std::size_t>(value)];
 }
 

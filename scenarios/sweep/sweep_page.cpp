@@ -21,9 +21,9 @@ constexpr std::size_t kPanelsAcross = 3;
 
 std::string numberCell(double v) { return std::isnan(v) ? "–" : shortNumber(v); }
 
-std::string part(double v) { return std::isnan(v) ? "–" : print("%.2f", v); }
+std::string twoDigits(double v) { return std::isnan(v) ? "–" : print("%.2f", v); }
 
-std::string span(const Interval& i) { return part(i.low) + " to " + part(i.high); }
+std::string twoEnds(const Interval& i) { return twoDigits(i.low) + " to " + twoDigits(i.high); }
 
 std::string unitCell(const std::string& unit) { return unit.empty() ? "1" : unit; }
 
@@ -81,10 +81,10 @@ void tellFactors(HtmlPage& page, const SweepIdentity& sweep, const MeasureStatis
   if (m.sobol) head.insert(head.end(), {"first order", "95 %", "total", "95 %"});
   std::vector<std::vector<std::string>> lines;
   for (std::size_t i = 0; i < sweep.factors.size(); ++i) {
-    lines.push_back({sweep.factors[i].name, part(m.withFactor[i].rho), span(m.withFactor[i].interval)});
+    lines.push_back({sweep.factors[i].name, twoDigits(m.withFactor[i].rho), twoEnds(m.withFactor[i].interval)});
     if (!m.sobol) continue;
     const SobolIndex& s = m.sobol->factors[i];
-    lines.back().insert(lines.back().end(), {part(s.first), span(s.firstInterval), part(s.total), span(s.totalInterval)});
+    lines.back().insert(lines.back().end(), {twoDigits(s.first), twoEnds(s.firstInterval), twoDigits(s.total), twoEnds(s.totalInterval)});
   }
   page.table(head, lines);
   if (m.sobol)

@@ -11,7 +11,7 @@ namespace {
 /// Of the normal distribution, both sides, 95 %.
 constexpr double kNormal95 = 1.959963984540054;
 
-void spread(MeasureStatistics& s, std::vector<double> values) {
+void setSpread(MeasureStatistics& s, std::vector<double> values) {
   const double n = static_cast<double>(values.size());
   double sum = 0.0, squares = 0.0;
   for (double v : values) sum += v;
@@ -31,7 +31,7 @@ Interval correlationInterval(double rho, int samples) {
 }
 
 std::vector<MeasureStatistics> sweepStatistics(const SweepIdentity& identity, const std::vector<SweepRow>& rows, bool isSaltelli) {
-  const std::vector<MeasureColumn> columns = columnsOf(identity);
+  const std::vector<MeasureColumn> columns = measureColumns(identity);
   const std::size_t width = identity.factors.size() + 2;
   std::vector<MeasureStatistics> all;
   for (std::size_t column = 0; column < columns.size(); ++column) {
@@ -53,7 +53,7 @@ std::vector<MeasureStatistics> sweepStatistics(const SweepIdentity& identity, co
       independent.push_back(value);
       for (std::size_t i = 0; i < factors.size(); ++i) factors[i].push_back(r.factors.at(i));
     }
-    spread(s, values);
+    setSpread(s, values);
     for (const std::vector<double>& f : factors) {
       const double rho = rankCorrelation(f, independent);
       const int n = static_cast<int>(f.size());

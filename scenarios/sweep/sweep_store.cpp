@@ -22,7 +22,7 @@ std::vector<std::pair<std::string, std::string>> keysOf(const SweepIdentity& s) 
 std::map<std::string, std::string> tablesOf(const SweepIdentity& identity) {
   std::string samples = "CREATE TABLE samples(sample INTEGER PRIMARY KEY, seed TEXT";
   for (const Factor& f : identity.factors) samples += ", " + quotedName(f.name) + (f.choices.empty() ? "" : " TEXT");
-  for (const MeasureColumn& c : columnsOf(identity)) samples += ", " + quotedName(c.name);
+  for (const MeasureColumn& c : measureColumns(identity)) samples += ", " + quotedName(c.name);
   return {{"sweep", "CREATE TABLE sweep(key TEXT PRIMARY KEY, value TEXT)"},
           {"columns", "CREATE TABLE columns(place INTEGER PRIMARY KEY, kind TEXT, name TEXT, unit TEXT, choices TEXT)"},
           {"samples", samples + ", why TEXT)"}};
@@ -39,7 +39,7 @@ std::vector<StoredColumn> storedColumns(const SweepIdentity& identity) {
     for (const std::string& word : f.choices) words += word + "\n";
     columns.push_back({"factor", f.name, f.unit, words});
   }
-  for (const MeasureColumn& c : columnsOf(identity)) columns.push_back({"measure", c.name, c.unit, ""});
+  for (const MeasureColumn& c : measureColumns(identity)) columns.push_back({"measure", c.name, c.unit, ""});
   return columns;
 }
 
@@ -71,7 +71,7 @@ SweepStore SweepStore::existing(const std::filesystem::path& file, const SweepId
 }
 
 SweepStore::SweepStore(const std::filesystem::path& file, const SweepIdentity& identity, std::chrono::milliseconds patience, bool mayMake)
-    : file_((refuseUnfitNames(identity, file.string()), file), mayMake, patience), identity_(identity), measures_(columnsOf(identity).size()) {
+    : file_((refuseUnfitNames(identity, file.string()), file), mayMake, patience), identity_(identity), measures_(measureColumns(identity).size()) {
   // EXTRA: what is committed outlives a power failure too.
   file_.run("PRAGMA synchronous=EXTRA");
   if (isEmpty()) {
@@ -129,7 +129,7 @@ void SweepStore::compare(bool mayLearn) {
     if (SqliteStatement(file_, "SELECT 1 FROM sqlite_schema WHERE type='trigger'").step()) file_.refuseDamaged("it has a trigger");
   }
   std::vector<std::string> given;
-  for (const MeasureColumn& c : columnsOf(identity_)) given.push_back(c.unit);
+  for (const MeasureColumn& c : measureColumns(identity_)) given.push_back(c.unit);
   if (mayLearn) learnUnits(given);
   else unitsToLearn(given);
 }
@@ -159,13 +159,13 @@ std::vector<std::string> SweepStore::knownUnits() const {
 SweepIdentity SweepStore::identity() const {
   const std::lock_guard lock(mutex_);
   SweepIdentity known = identity_;
-  setUnits(known, knownUnits());
+  setMeasureUnits(known, knownUnits());
   return known;
 }
 
 std::vector<MeasureColumn> SweepStore::unitsToLearn(const std::vector<std::string>& units) const {
   const std::vector<std::string> known = knownUnits();
-  const std::vector<MeasureColumn> columns = columnsOf(identity_);
+  const std::vector<MeasureColumn> columns = measureColumns(identity_);
   if (units.size() != columns.size()) throw std::invalid_argument("SweepStore::learnUnits: a unit for each column");
   std::vector<MeasureColumn> news;
   for (std::size_t i = 0; i < units.size(); ++i) {
@@ -216,7 +216,7 @@ void SweepStore::insert(const SweepRow& row) {
   for (std::size_t i = 0; i < row.factors.size(); ++i) {
     const Factor& f = identity_.factors[i];
     if (f.choices.empty()) add.bind(++place, row.factors[i]);
-    else add.bind(++place, wordOf(f, row.factors[i]));
+    else add.bind(++place, choiceWord(f, row.factors[i]));
   }
   for (double m : row.measures) add.bind(++place, m);
   add.bind(++place, row.why);
@@ -296,7 +296,7 @@ void mergeStores(const std::filesystem::path& into, const SweepIdentity& identit
                         "the same result for the same sample", "merge one of the two, and draw what it lacks");
     }
     std::vector<std::string>& of = units.emplace_back();
-    for (const MeasureColumn& c : columnsOf(store.identity())) of.push_back(c.unit);
+    for (const MeasureColumn& c : measureColumns(store.identity())) of.push_back(c.unit);
   };
   for (const std::filesystem::path& part : parts) take(SweepStore::existing(part, identity), part);
   SweepStore whole(into, identity);

@@ -6,8 +6,8 @@
 #include <random>
 #include <regex>
 
-#include "scenarios/sweep/plot_axis.hpp"
 #include "scenarios/sweep/svg_drawing.hpp"
+#include "scenarios/sweep/sweep_axis.hpp"
 #include "scenarios/sweep/sweep_page.hpp"
 #include "sim/parameters/read_file.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -15,7 +15,7 @@
 namespace pitviper::test {
 namespace {
 
-SweepIdentity aSweep(int samples) {
+SweepIdentity aReportedSweep(int samples) {
   SweepIdentity s{"jet <in> haze", "ab12", "jet.yaml", "1.0", samples, {}, {}};
   s.factors = {{"range", "km"}, {"haze & co", "", {"none", "rural", "\"urban\""}}, {"seen from", "deg"}, {"visibility", "km"}};
   Measure contrast, more;
@@ -25,7 +25,7 @@ SweepIdentity aSweep(int samples) {
   return s;
 }
 
-std::vector<SweepRow> rowsOf(const SweepIdentity& sweep) {
+std::vector<SweepRow> reportedRows(const SweepIdentity& sweep) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform;
   std::normal_distribution<double> normal;
@@ -72,7 +72,7 @@ std::string illFormed(const std::string& page) {
   return open.empty() ? "" : "not closed: " + open.back();
 }
 
-std::size_t countOf(const std::string& text, const std::string& part) {
+std::size_t timesIn(const std::string& text, const std::string& part) {
   std::size_t count = 0;
   for (std::size_t at = text.find(part); at != text.npos; at = text.find(part, at + part.size())) ++count;
   return count;
@@ -83,8 +83,8 @@ TEST(SweepPage, IsWholeAndNamesEverything) {
   for (const char* bad : {"<p>", "<p></b>", "<p a=1></p>", "<p>a & b</p>", "<p a=\"<\"></p>", "a < b"}) EXPECT_NE(illFormed(bad), "") << bad;
   const TemporaryFolder folder;
   for (bool isSaltelli : {false, true}) {
-    const SweepIdentity sweep = aSweep(500);
-    std::vector<SweepRow> rows = rowsOf(sweep);
+    const SweepIdentity sweep = aReportedSweep(500);
+    std::vector<SweepRow> rows = reportedRows(sweep);
     std::shuffle(rows.begin(), rows.end(), std::mt19937(2));
     const auto file = folder.path() / (isSaltelli ? "saltelli.html" : "random.html");
     writeSweepPage(file, sweep, rows, isSaltelli);
@@ -93,14 +93,14 @@ TEST(SweepPage, IsWholeAndNamesEverything) {
     for (const char* text :
          {"<h1>jet &lt;in&gt; haze</h1>", "contrast &lt;mw&gt; [W/sr]", "s/n &amp; all [1]", "constant [K]", "haze &amp; co", "&quot;urban&quot;",
           "sun &amp; &lt;moon&gt; below", "Of 500 samples 500 are stored, and of these 6 have failed.", "pitviper.scenario_sha256 = ab12;"})
-      EXPECT_GT(countOf(page, text), 0u) << text;
-    for (const char* text : {"<script", "<moon>", "src=", "url(", "<link", "nan", "inf\""}) EXPECT_EQ(countOf(page, text), 0u) << text;
+      EXPECT_GT(timesIn(page, text), 0u) << text;
+    for (const char* text : {"<script", "<moon>", "src=", "url(", "<link", "nan", "inf\""}) EXPECT_EQ(timesIn(page, text), 0u) << text;
     // http: the name of SVG's language only.
-    EXPECT_EQ(countOf(page, "http"), countOf(page, "http://www.w3.org/2000/svg"));
-    EXPECT_EQ(countOf(page, "<svg"), 3u) << "one of each measure";
+    EXPECT_EQ(timesIn(page, "http"), timesIn(page, "http://www.w3.org/2000/svg"));
+    EXPECT_EQ(timesIn(page, "<svg"), 3u) << "one of each measure";
     // A dot for each of the 494 that did not fail, in 4 panels of 3 measures; 10 of the second have no number, or none that has a place.
-    EXPECT_EQ(countOf(page, "h0"), 4u * (494 + 484 + 494));
-    EXPECT_EQ(countOf(page, "first-order index") > 0, isSaltelli);
+    EXPECT_EQ(timesIn(page, "h0"), 4u * (494 + 484 + 494));
+    EXPECT_EQ(timesIn(page, "first-order index") > 0, isSaltelli);
     std::reverse(rows.begin(), rows.end());
     writeSweepPage(file, sweep, rows, isSaltelli);
     EXPECT_EQ(readWholeFile(file, {}, {}), page) << "whatever the order of rows";
@@ -111,19 +111,19 @@ TEST(SweepPage, OfFewSamplesOrMany) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "page.html";
   for (int samples : {0, 1, 5, 2500}) {
-    const SweepIdentity sweep = aSweep(samples);
-    writeSweepPage(file, sweep, rowsOf(sweep), true);
+    const SweepIdentity sweep = aReportedSweep(samples);
+    writeSweepPage(file, sweep, reportedRows(sweep), true);
     const std::string page = readWholeFile(file, {}, {});
     EXPECT_EQ(illFormed(page.substr(page.find("<body>"), page.find("</html>") - page.find("<body>"))), "") << samples;
-    EXPECT_EQ(countOf(page, "nothing to draw") > 0, samples == 0);
-    EXPECT_EQ(countOf(page, "Of 2472 samples 2000 are drawn as dots.") > 0, samples == 2500);
+    EXPECT_EQ(timesIn(page, "nothing to draw") > 0, samples == 0);
+    EXPECT_EQ(timesIn(page, "Of 2472 samples 2000 are drawn as dots.") > 0, samples == 2500);
   }
   const MayReplace never = [](const std::filesystem::path&) { throw UserError({}, "it stays"); };
-  EXPECT_THROW(writeSweepPage(file, aSweep(0), {}, false, never), UserError);
+  EXPECT_THROW(writeSweepPage(file, aReportedSweep(0), {}, false, never), UserError);
 }
 
 TEST(SweepPage, Axes) {
-  const PlotAxis linear = axisOf(std::vector<double>{0.0, 5.0, 10.0, NAN, INFINITY});
+  const SweepAxis linear = axisHolding(std::vector<double>{0.0, 5.0, 10.0, NAN, INFINITY});
   EXPECT_FALSE(linear.isLogarithmic);
   EXPECT_NEAR(linear.place(5.0), 0.5, 1e-12);
   EXPECT_NEAR(linear.place(10.0), 1.04 / 1.08, 1e-12) << "a margin of 4 %";
@@ -131,16 +131,16 @@ TEST(SweepPage, Axes) {
   ASSERT_EQ(linear.ticks.size(), 6u);
   EXPECT_EQ(linear.ticks[1].label, "2");
   EXPECT_NEAR(linear.ticks[1].at, linear.place(2.0), 1e-12);
-  const PlotAxis decades = axisOf(std::vector<double>{1e-3, 1e-1, 1.0, 1e1, 1e7});
+  const SweepAxis decades = axisHolding(std::vector<double>{1e-3, 1e-1, 1.0, 1e1, 1e7});
   EXPECT_TRUE(decades.isLogarithmic);
   EXPECT_NEAR(decades.place(1e2), 0.5, 1e-12);
   EXPECT_TRUE(std::isnan(decades.place(-1.0)));
   EXPECT_EQ(decades.ticks.front().label, "0.001");
   EXPECT_EQ(decades.ticks.back().label, "10⁷");
-  for (double same : {0.0, 1e-300, -7.0, 3e8}) EXPECT_NEAR(axisOf(std::vector<double>{same, same}).place(same), 0.5, 1e-9) << same;
-  EXPECT_TRUE(axisOf(std::vector<double>{-1e308, 1e308}).ticks.empty());
-  EXPECT_TRUE(axisOf(std::vector<double>{NAN}).ticks.empty());
-  const PlotAxis words = axisOf(Factor{"sky", "", {"clear", "überall bewölkt"}}, 14);
+  for (double same : {0.0, 1e-300, -7.0, 3e8}) EXPECT_NEAR(axisHolding(std::vector<double>{same, same}).place(same), 0.5, 1e-9) << same;
+  EXPECT_TRUE(axisHolding(std::vector<double>{-1e308, 1e308}).ticks.empty());
+  EXPECT_TRUE(axisHolding(std::vector<double>{NAN}).ticks.empty());
+  const SweepAxis words = axisOfWords(Factor{"sky", "", {"clear", "überall bewölkt"}}, 14);
   EXPECT_EQ(words.place(1.0), 0.75);
   EXPECT_EQ(words.ticks[0].label, "clear");
   EXPECT_EQ(words.ticks[1].label, "überal…");

@@ -14,7 +14,7 @@ namespace pitviper::test {
 namespace {
 
 /// Of the last digits of sums of some ten numbers near 1.
-constexpr double kRounding = 1e-12;
+constexpr double kSumRounding = 1e-12;
 
 SweepIdentity twoFactors(int samples) {
   SweepIdentity s{"s", "1", "s.yaml", "1", samples, {{"x", "km"}, {"sky", "", {"clear", "overcast"}}}, {}};
@@ -28,7 +28,7 @@ TEST(SweepStatistics, QuantilesOfKnownNumbers) {
   // Places (n - 1) p from 0: 0.15, 0.75, 1.5, 2.25, 2.85 of four numbers.
   const std::vector<double> rising{10.0, 20.0, 30.0, 50.0};
   const std::vector<double> wanted{10.0, 11.5, 17.5, 25.0, 35.0, 47.0, 50.0};
-  for (std::size_t q = 0; q < wanted.size(); ++q) EXPECT_NEAR(quantileOf(rising, kSweepQuantiles[q]), wanted[q], 50.0 * kRounding);
+  for (std::size_t q = 0; q < wanted.size(); ++q) EXPECT_NEAR(quantileOf(rising, kSweepQuantiles[q]), wanted[q], 50.0 * kSumRounding);
   EXPECT_EQ(quantileOf({3.0}, 0.3), 3.0);
   EXPECT_TRUE(std::isnan(quantileOf({}, 0.5)));
   EXPECT_EQ(quantileOf({1.0, INFINITY, INFINITY}, 0.75), INFINITY);
@@ -37,11 +37,11 @@ TEST(SweepStatistics, QuantilesOfKnownNumbers) {
 TEST(SweepStatistics, RankCorrelationsWorkedByHand) {
   // Ranks 1, 2.5, 2.5, 4 and 1, 4, 2.5, 2.5: deviations -1.5, 0, 0, 1.5 and -1.5, 1.5, 0, 0, so 2.25 / sqrt(4.5 * 4.5).
   EXPECT_EQ(ranksOf({1.0, 7.0, 7.0, 9.0}), (std::vector<double>{1.0, 2.5, 2.5, 4.0}));
-  EXPECT_NEAR(rankCorrelation({1.0, 7.0, 7.0, 9.0}, {-5.0, 3.0, 2.0, 2.0}), 0.5, kRounding);
+  EXPECT_NEAR(rankCorrelation({1.0, 7.0, 7.0, 9.0}, {-5.0, 3.0, 2.0, 2.0}), 0.5, kSumRounding);
   // Three equal: ranks 2, 2, 2, 4 and 1, 2, 3, 4: deviations -0.5 (thrice), 1.5 and -1.5, -0.5, 0.5, 1.5, so 3 / sqrt(3 * 5).
-  EXPECT_NEAR(rankCorrelation({0.0, 0.0, 0.0, 1.0}, {1.0, 2.0, 3.0, 4.0}), 3.0 / std::sqrt(15.0), kRounding);
+  EXPECT_NEAR(rankCorrelation({0.0, 0.0, 0.0, 1.0}, {1.0, 2.0, 3.0, 4.0}), 3.0 / std::sqrt(15.0), kSumRounding);
   // Without ties: 1 - 6 * 194 / (10 * 99).
-  EXPECT_NEAR(rankCorrelation({106, 100, 86, 101, 99, 103, 97, 113, 112, 110}, {7, 27, 2, 50, 28, 29, 20, 12, 6, 17}), -29.0 / 165.0, kRounding);
+  EXPECT_NEAR(rankCorrelation({106, 100, 86, 101, 99, 103, 97, 113, 112, 110}, {7, 27, 2, 50, 28, 29, 20, 12, 6, 17}), -29.0 / 165.0, kSumRounding);
   EXPECT_EQ(rankCorrelation({1.0, 2.0, INFINITY}, {1e-300, 2e-300, 1e300}), 1.0);
   EXPECT_TRUE(std::isnan(rankCorrelation({1.0, 1.0, 1.0}, {1.0, 2.0, 3.0})));
   EXPECT_TRUE(std::isnan(rankCorrelation({}, {})));
@@ -84,12 +84,12 @@ TEST(SweepStatistics, FailedAndMissingSamplesAreCounted) {
   EXPECT_EQ(found[1].count, 3);
   EXPECT_EQ(found[1].missing, 1);
   // 2, 4, 9, 1: squares about 4 are 4 + 0 + 25 + 9.
-  EXPECT_NEAR(found[0].mean, 4.0, kRounding);
-  EXPECT_NEAR(found[0].sigma, std::sqrt(38.0 / 3.0), 10.0 * kRounding);
-  EXPECT_NEAR(found[0].quantiles[3], 3.0, kRounding);
+  EXPECT_NEAR(found[0].mean, 4.0, kSumRounding);
+  EXPECT_NEAR(found[0].sigma, std::sqrt(38.0 / 3.0), 10.0 * kSumRounding);
+  EXPECT_NEAR(found[0].quantiles[3], 3.0, kSumRounding);
   // Ranks 1, 2, 3, 4 and 2, 3, 4, 1: 1 - 6 * 12 / 60; with the choice's 1.5, 3.5, 3.5, 1.5: 4 / sqrt(4 * 5).
-  EXPECT_NEAR(found[0].withFactor[0].rho, -0.2, kRounding);
-  EXPECT_NEAR(found[0].withFactor[1].rho, 4.0 / std::sqrt(20.0), kRounding);
+  EXPECT_NEAR(found[0].withFactor[0].rho, -0.2, kSumRounding);
+  EXPECT_NEAR(found[0].withFactor[1].rho, 4.0 / std::sqrt(20.0), kSumRounding);
   EXPECT_EQ(found[0].withFactor[0].samples, 4);
   EXPECT_FALSE(found[0].sobol);
   EXPECT_EQ(found[1].sigma, 0.0);

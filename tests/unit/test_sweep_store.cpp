@@ -23,7 +23,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-SweepIdentity aSweep(int samples) {
+SweepIdentity aStoredSweep(int samples) {
   SweepIdentity s{"hot days", "5a1e", "jet.yaml", "1.0", samples, {}, {}};
   s.factors = {{"distance", "km"}, {"haze \"thick\"", "", {"none", "rural, thin", "fog"}}, {"tilt", ""}};
   Measure range, python;
@@ -34,7 +34,7 @@ SweepIdentity aSweep(int samples) {
 }
 
 /// The same for a number, whoever makes it; every tenth failed, every seventh lacks a measure.
-SweepRow aRow(int sample) {
+SweepRow storedRow(int sample) {
   std::mt19937_64 random(static_cast<unsigned>(sample));
   const auto number = [&] { return std::ldexp(static_cast<double>(random()), static_cast<int>(random() % 200) - 100); };
   SweepRow r{sample, random(), {number(), static_cast<double>(random() % 3), -number()}, {number(), -number(), number()}, ""};
@@ -45,12 +45,12 @@ SweepRow aRow(int sample) {
 
 std::string csvOfAll(const SweepIdentity& sweep) {
   std::vector<SweepRow> rows;
-  for (int i = sweep.samples - 1; i >= 0; --i) rows.push_back(aRow(i));
+  for (int i = sweep.samples - 1; i >= 0; --i) rows.push_back(storedRow(i));
   return csvOf(sweep, rows);
 }
 
 template <class Error>
-std::string saidBy(const std::function<void()>& act) {
+std::string refusalBy(const std::function<void()>& act) {
   try {
     act();
   } catch (const Error& e) {
@@ -63,13 +63,13 @@ std::string saidBy(const std::function<void()>& act) {
 bool holds(const std::string& text, const std::string& part) { return text.find(part) != text.npos; }
 
 /// Exit status of what a process of its own did; 99 where it threw.
-int statusOf(pid_t child) {
+int endOfProcess(pid_t child) {
   int status = 0;
   EXPECT_EQ(::waitpid(child, &status, 0), child);
   return WIFEXITED(status) ? WEXITSTATUS(status) : -WTERMSIG(status);
 }
 
-pid_t inAProcess(const std::function<void()>& act) {
+pid_t inAnotherProcess(const std::function<void()>& act) {
   const pid_t child = ::fork();
   if (child != 0) return child;
   try {
@@ -83,7 +83,7 @@ pid_t inAProcess(const std::function<void()>& act) {
 
 TEST(SweepStore, NumbersComeBackToTheBit) {
   const TemporaryFolder folder;
-  const SweepIdentity sweep = aSweep(4);
+  const SweepIdentity sweep = aStoredSweep(4);
   const std::vector<double> odd{-0.0, 5e-324, std::numeric_limits<double>::max(), INFINITY, -INFINITY, 0.1, 3.0, -9007199254740993.0, NAN};
   std::vector<SweepRow> put;
   for (int i = 0; i < 3; ++i) {
@@ -112,39 +112,39 @@ TEST(SweepStore, NumbersComeBackToTheBit) {
 
 TEST(SweepStore, TheFirstOfASampleStays) {
   const TemporaryFolder folder;
-  SweepStore store(folder.path() / "s.db", aSweep(8));
-  for (int i : {3, 4, 3, 4}) store.put(aRow(i));
+  SweepStore store(folder.path() / "s.db", aStoredSweep(8));
+  for (int i : {3, 4, 3, 4}) store.put(storedRow(i));
   EXPECT_EQ(store.done(), (std::vector<char>{0, 0, 0, 1, 1, 0, 0, 0}));
-  SweepRow other = aRow(3);
+  SweepRow other = storedRow(3);
   other.measures[2] = std::nextafter(other.measures[2], 0.0);
   EXPECT_THROW(store.put(other), std::logic_error);
-  other = aRow(4), other.why = "another";
+  other = storedRow(4), other.why = "another";
   EXPECT_THROW(store.put(other), std::logic_error);
   // Of many rows none, where one is refused.
-  EXPECT_THROW(store.put({aRow(5), other}), std::logic_error);
-  EXPECT_EQ(csvOf(aSweep(8), store.rows()), csvOf(aSweep(8), {aRow(4), aRow(3)}));
+  EXPECT_THROW(store.put({storedRow(5), other}), std::logic_error);
+  EXPECT_EQ(csvOf(aStoredSweep(8), store.rows()), csvOf(aStoredSweep(8), {storedRow(4), storedRow(3)}));
   EXPECT_THROW(store.row(5), std::out_of_range);
-  EXPECT_THROW(store.put(aRow(8)), std::invalid_argument) << "the sweep has 8";
+  EXPECT_THROW(store.put(storedRow(8)), std::invalid_argument) << "the sweep has 8";
 }
 
 TEST(SweepStore, TwoProcessesPutAtOnce) {
   const TemporaryFolder folder;
-  const SweepIdentity sweep = aSweep(40);
+  const SweepIdentity sweep = aStoredSweep(40);
   std::vector<pid_t> children;
   for (int p = 0; p < 2; ++p)
-    children.push_back(inAProcess([&] {
+    children.push_back(inAnotherProcess([&] {
       SweepStore store(folder.path() / "s.db", sweep);  // both make it, too
       // Ten samples are drawn by both.
-      for (int i = p == 0 ? 0 : 15; i < (p == 0 ? 25 : 40); ++i) store.put(aRow(i));
+      for (int i = p == 0 ? 0 : 15; i < (p == 0 ? 25 : 40); ++i) store.put(storedRow(i));
     }));
-  for (pid_t child : children) EXPECT_EQ(statusOf(child), 0);
+  for (pid_t child : children) EXPECT_EQ(endOfProcess(child), 0);
   EXPECT_EQ(csvOf(sweep, SweepStore(folder.path() / "s.db", sweep).rows()), csvOfAll(sweep));
 }
 
 // A killed process has lost nothing that put() returned from, and who goes on finds each sample once.
 TEST(SweepStore, KilledAnywhereItGoesOn) {
   const TemporaryFolder folder;
-  const SweepIdentity sweep = aSweep(60);
+  const SweepIdentity sweep = aStoredSweep(60);
   const auto file = folder.path() / "s.db";
   std::mt19937 random(7);
   std::vector<char> told(60, 0);
@@ -153,13 +153,13 @@ TEST(SweepStore, KilledAnywhereItGoesOn) {
     ASSERT_LT(kills, 500) << "it never comes to its end";
     int way[2];
     ASSERT_EQ(::pipe(way), 0);
-    const pid_t child = inAProcess([&] {
+    const pid_t child = inAnotherProcess([&] {
       ::close(way[0]);
       SweepStore store(file, sweep);
       const std::vector<char> done = store.done();
       for (int i = 0; i < sweep.samples; ++i) {
         if (done[static_cast<std::size_t>(i)]) continue;
-        store.put(aRow(i));
+        store.put(storedRow(i));
         const char number = static_cast<char>(i);
         if (::write(way[1], &number, 1) != 1) ::_exit(1);
       }
@@ -167,7 +167,7 @@ TEST(SweepStore, KilledAnywhereItGoesOn) {
     ::close(way[1]);
     ::usleep(static_cast<useconds_t>(1000 + random() % 8000));
     ::kill(child, SIGKILL);
-    const int status = statusOf(child);
+    const int status = endOfProcess(child);
     ASSERT_TRUE(status == 0 || status == -SIGKILL) << status;
     ended = status == 0;
     for (char number; ::read(way[0], &number, 1) == 1;) ++told[static_cast<std::size_t>(number)];
@@ -183,12 +183,12 @@ TEST(SweepStore, KilledAnywhereItGoesOn) {
 TEST(SweepStore, AnotherSweepsFileIsRefused) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "s.db";
-  const SweepIdentity sweep = aSweep(8);
-  SweepStore(file, sweep).put(aRow(1));
+  const SweepIdentity sweep = aStoredSweep(8);
+  SweepStore(file, sweep).put(storedRow(1));
   const auto said = [&](const std::function<void(SweepIdentity&)>& change) {
     SweepIdentity other = sweep;
     change(other);
-    const std::string text = saidBy<UserError>([&] { SweepStore(file, other); });
+    const std::string text = refusalBy<UserError>([&] { SweepStore(file, other); });
     EXPECT_TRUE(holds(text, file.string())) << text;
     EXPECT_TRUE(holds(text, "; fix: ")) << text;
     return text;
@@ -208,18 +208,18 @@ TEST(SweepStore, AnotherSweepsFileIsRefused) {
   EXPECT_EQ(SweepStore(file, sweep).rows().size(), 1u);
   // A database of something else, and one of which a table was changed by hand.
   SqliteFile(folder.path() / "other.db", true, milliseconds(10)).run("CREATE TABLE birds(name)");
-  EXPECT_TRUE(holds(saidBy<UserError>([&] { SweepStore(folder.path() / "other.db", sweep); }), "other.db: is a database of something else"));
+  EXPECT_TRUE(holds(refusalBy<UserError>([&] { SweepStore(folder.path() / "other.db", sweep); }), "other.db: is a database of something else"));
   SqliteFile(file, false, milliseconds(10)).run("ALTER TABLE samples ADD COLUMN more");
-  EXPECT_TRUE(holds(saidBy<UserError>([&] { SweepStore(file, sweep); }), "is damaged (the table 'samples' was changed)"));
+  EXPECT_TRUE(holds(refusalBy<UserError>([&] { SweepStore(file, sweep); }), "is damaged (the table 'samples' was changed)"));
 }
 
 TEST(SweepStore, UnitsAreLearntLater) {
   const TemporaryFolder folder;
-  const SweepIdentity sweep = aSweep(8);
+  const SweepIdentity sweep = aStoredSweep(8);
   SweepStore store(folder.path() / "s.db", sweep);
   store.learnUnits({"", "", "K"});
   store.learnUnits({"m", "", "K"});
-  EXPECT_TRUE(holds(saidBy<UserError>([&] { store.learnUnits({"", "", "degC"}); }), "in 'K', not in 'degC'"));
+  EXPECT_TRUE(holds(refusalBy<UserError>([&] { store.learnUnits({"", "", "degC"}); }), "in 'K', not in 'degC'"));
   const std::string csv = csvOf(SweepStore(folder.path() / "s.db", sweep).identity(), {});
   EXPECT_EQ(csv, "sample,seed,distance [km],\"haze \"\"thick\"\"\",tilt [1],range [m],snr [1],it's <odd> [K],why\n");
 }
@@ -227,9 +227,9 @@ TEST(SweepStore, UnitsAreLearntLater) {
 TEST(SweepStore, NamesThatMakeNoTable) {
   const TemporaryFolder folder;
   const auto said = [&](const std::function<void(SweepIdentity&)>& change) {
-    SweepIdentity sweep = aSweep(8);
+    SweepIdentity sweep = aStoredSweep(8);
     change(sweep);
-    const std::string text = saidBy<UserError>([&] { SweepStore(folder.path() / "s.db", sweep); });
+    const std::string text = refusalBy<UserError>([&] { SweepStore(folder.path() / "s.db", sweep); });
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "s.db"));
     return text;
   };
@@ -246,7 +246,7 @@ TEST(SweepStore, NamesThatMakeNoTable) {
                     "1900 at most"));
 }
 
-std::string bytesOf(const std::filesystem::path& file) {
+std::string bytesOfFile(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(in), {}};
 }
@@ -254,11 +254,11 @@ std::string bytesOf(const std::filesystem::path& file) {
 // Whatever is in a file, it is read or refused in a line that names it.
 TEST(SweepStore, DamageIsRefused) {
   const TemporaryFolder folder;
-  const SweepIdentity sweep = aSweep(60);
+  const SweepIdentity sweep = aStoredSweep(60);
   std::vector<SweepRow> rows;
-  for (int i = 0; i < 60; ++i) rows.push_back(aRow(i));
+  for (int i = 0; i < 60; ++i) rows.push_back(storedRow(i));
   SweepStore(folder.path() / "whole.db", sweep).put(rows);
-  const std::string whole = bytesOf(folder.path() / "whole.db"), wanted = csvOfAll(sweep);
+  const std::string whole = bytesOfFile(folder.path() / "whole.db"), wanted = csvOfAll(sweep);
   // "": read as it was.
   const auto saidOf = [&](const std::string& bytes) -> std::string {
     const std::string file = folder.put("damaged.db", bytes);
@@ -292,13 +292,13 @@ TEST(SweepStore, DamageIsRefused) {
 
 TEST(SweepStore, SevenPartsAreOneRun) {
   const TemporaryFolder folder;
-  const SweepIdentity sweep = aSweep(60);
+  const SweepIdentity sweep = aStoredSweep(60);
   std::vector<std::filesystem::path> parts;
   for (int p = 0; p < 7; ++p) {
     parts.push_back(folder.path() / ("part" + std::to_string(p) + ".db"));
     std::vector<SweepRow> rows;
-    for (int i = p; i < 60; i += 7) rows.push_back(aRow(i));
-    if (p == 2) rows.push_back(aRow(0));  // drawn by two
+    for (int i = p; i < 60; i += 7) rows.push_back(storedRow(i));
+    if (p == 2) rows.push_back(storedRow(0));  // drawn by two
     SweepStore(parts.back(), sweep).put(rows);
   }
   SweepStore(parts[5], sweep).learnUnits({"", "dB", ""});
@@ -306,25 +306,25 @@ TEST(SweepStore, SevenPartsAreOneRun) {
   mergeStores(into, sweep, {parts[6], parts[1], parts[2]});
   mergeStores(into, sweep, parts);
   SweepIdentity told = sweep;
-  setUnits(told, {"", "dB", ""});
+  setMeasureUnits(told, {"", "dB", ""});
   const SweepStore store(into, sweep);
   EXPECT_EQ(csvOf(store.identity(), store.rows()), csvOfAll(told));
 
   const auto refused = [&](const std::filesystem::path& part) {
     std::vector<std::filesystem::path> all = parts;
     all[3] = part;
-    const std::string text = saidBy<UserError>([&] { mergeStores(folder.path() / "none.db", sweep, all); });
+    const std::string text = refusalBy<UserError>([&] { mergeStores(folder.path() / "none.db", sweep, all); });
     EXPECT_TRUE(holds(text, part.string())) << text;
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "none.db"));
     return text;
   };
   EXPECT_TRUE(holds(refused(folder.path() / "lost.db"), "there is no such file"));
-  EXPECT_TRUE(holds(refused(folder.put("cut.db", bytesOf(parts[3]).substr(0, 9000))), "is damaged"));
+  EXPECT_TRUE(holds(refused(folder.put("cut.db", bytesOfFile(parts[3]).substr(0, 9000))), "is damaged"));
   SweepIdentity other = sweep;
   other.name = "cold days";
-  SweepStore(folder.path() / "other.db", other).put(aRow(3));
+  SweepStore(folder.path() / "other.db", other).put(storedRow(3));
   EXPECT_TRUE(holds(refused(folder.path() / "other.db"), "another sweep"));
-  SweepRow changed = aRow(6);
+  SweepRow changed = storedRow(6);
   changed.measures[0] += 1.0;
   SweepStore(folder.path() / "changed.db", sweep).put(changed);
   EXPECT_TRUE(holds(refused(folder.path() / "changed.db"), "sample 6"));
@@ -332,43 +332,43 @@ TEST(SweepStore, SevenPartsAreOneRun) {
 
 TEST(SweepStore, WhatTheMachineCannotStoreIsSaid) {
   const TemporaryFolder folder;
-  const SweepIdentity sweep = aSweep(60);
-  EXPECT_TRUE(holds(saidBy<OutputError>([&] { SweepStore(folder.path() / "no" / "s.db", sweep); }), "create the folder first"));
-  EXPECT_TRUE(holds(saidBy<OutputError>([&] { SweepStore(folder.path(), sweep); }), "not a regular file"));
+  const SweepIdentity sweep = aStoredSweep(60);
+  EXPECT_TRUE(holds(refusalBy<OutputError>([&] { SweepStore(folder.path() / "no" / "s.db", sweep); }), "create the folder first"));
+  EXPECT_TRUE(holds(refusalBy<OutputError>([&] { SweepStore(folder.path(), sweep); }), "not a regular file"));
   const auto file = folder.path() / "s.db";
   SweepStore store(file, sweep, milliseconds(30));
-  store.put(aRow(0));
+  store.put(storedRow(0));
   {
     SqliteFile another(file, false, milliseconds(10));
     const SqliteTransaction writing(another, true);
-    EXPECT_TRUE(holds(saidBy<OutputError>([&] { store.put(aRow(1)); }), "another process keeps the file locked"));
+    EXPECT_TRUE(holds(refusalBy<OutputError>([&] { store.put(storedRow(1)); }), "another process keeps the file locked"));
   }
-  store.put(aRow(1));
+  store.put(storedRow(1));
   // A disk that takes no more, as the limit of a file's size makes it.
-  const pid_t child = inAProcess([&] {
+  const pid_t child = inAnotherProcess([&] {
     ::signal(SIGXFSZ, SIG_IGN);
     const rlim_t size = std::filesystem::file_size(file);
     const rlimit limit{size, size};
     ::setrlimit(RLIMIT_FSIZE, &limit);
     SweepStore full(file, sweep);
     for (int i = 0; i < 60; ++i) {
-      const std::string said = saidBy<OutputError>([&] { full.put(aRow(i)); });
+      const std::string said = refusalBy<OutputError>([&] { full.put(storedRow(i)); });
       if (holds(said, "raise the file size limit")) ::_exit(full.rows().size() < 60u ? 7 : 8);
     }
   });
-  EXPECT_EQ(statusOf(child), 7);
+  EXPECT_EQ(endOfProcess(child), 7);
   const std::size_t kept = store.rows().size();
   EXPECT_GT(kept, 2u);
-  for (int i = 0; i < 60; ++i) store.put(aRow(i));
+  for (int i = 0; i < 60; ++i) store.put(storedRow(i));
   EXPECT_EQ(csvOf(sweep, store.rows()), csvOfAll(sweep));
   // Where it was removed meanwhile a sample would go nowhere.
   SweepStore lost(folder.path() / "lost.db", sweep);
   std::filesystem::remove(folder.path() / "lost.db");
-  EXPECT_TRUE(holds(saidBy<OutputError>([&] { lost.put(aRow(3)); }), "was moved or removed meanwhile"));
+  EXPECT_TRUE(holds(refusalBy<OutputError>([&] { lost.put(storedRow(3)); }), "was moved or removed meanwhile"));
 }
 
 TEST(SweepCsv, NumbersAndWords) {
-  const SweepIdentity sweep = aSweep(4);
+  const SweepIdentity sweep = aStoredSweep(4);
   const std::vector<SweepRow> rows{{2, 18446744073709551615u, {0.1, 1.0, -0.0}, {100000.0, NAN, INFINITY}, ""},
                                    {0, 7, {1e-7, 0.0, 1e300}, {}, "no \"sun\", no moon"}};
   EXPECT_EQ(csvOf(sweep, rows),

@@ -7,7 +7,7 @@
 
 namespace pitviper {
 
-struct PlotAxis {
+struct SweepAxis {
   struct Tick {
     double at = 0.0;  ///< as place()
     std::string label;
@@ -23,12 +23,12 @@ struct PlotAxis {
 
 /// Holds all finite values with a margin: logarithmic where they are above 0 and crowd at the low end of two decades or more. Of no finite values, or of some
 /// too far apart for a double, it has no ticks and nothing has a place.
-PlotAxis axisOf(const std::vector<double>& values);
+SweepAxis axisHolding(const std::vector<double>& values);
 
 /// From `low` to `high` as they are. Needs finite low < high.
-PlotAxis axisBetween(double low, double high);
+SweepAxis plainAxis(double low, double high);
 
 /// Words side by side, at 0, 1, ...; each cut to its part of the `characters` that have room.
-PlotAxis axisOf(const Factor& choice, std::size_t characters);
+SweepAxis axisOfWords(const Factor& choice, std::size_t characters);
 
 }  // namespace pitviper

@@ -1,4 +1,4 @@
-#include "scenarios/sweep/plot_axis.hpp"
+#include "scenarios/sweep/sweep_axis.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace pitviper {
 namespace {
 
-constexpr double kMargin = 0.04;
+constexpr double kAxisMargin = 0.04;
 constexpr double kMostLogarithmicTicks = 6.0;
 
 /// "0.01", "100", "10⁷".
@@ -25,10 +25,10 @@ bool crowdsAtTheLowEnd(const std::vector<double>& rising) {
   return rising.front() > 0.0 && rising.back() >= 100.0 * rising.front() && rising[rising.size() / 2] < 0.1 * rising.back();
 }
 
-PlotAxis logarithmicAxis(double least, double most) {
-  PlotAxis axis;
+SweepAxis logarithmicAxis(double least, double most) {
+  SweepAxis axis;
   axis.isLogarithmic = true;
-  const double margin = kMargin * (std::log10(most) - std::log10(least));
+  const double margin = kAxisMargin * (std::log10(most) - std::log10(least));
   axis.low = std::log10(least) - margin, axis.high = std::log10(most) + margin;
   const int first = static_cast<int>(std::ceil(axis.low)), last = static_cast<int>(std::floor(axis.high));
   const int step = static_cast<int>(std::ceil((last - first + 1) / kMostLogarithmicTicks));
@@ -38,13 +38,13 @@ PlotAxis logarithmicAxis(double least, double most) {
 
 }  // namespace
 
-double PlotAxis::place(double value) const {
+double SweepAxis::place(double value) const {
   if (!std::isfinite(value) || ticks.empty() || (isLogarithmic && value <= 0.0)) return NAN;
   return ((isLogarithmic ? std::log10(value) : value) - low) / (high - low);
 }
 
-PlotAxis axisBetween(double low, double high) {
-  PlotAxis axis;
+SweepAxis plainAxis(double low, double high) {
+  SweepAxis axis;
   axis.low = low, axis.high = high;
   const Ticks round = chooseTicks(low, high);
   axis.power = powerText(round.power);
@@ -52,7 +52,7 @@ PlotAxis axisBetween(double low, double high) {
   return axis;
 }
 
-PlotAxis axisOf(const std::vector<double>& values) {
+SweepAxis axisHolding(const std::vector<double>& values) {
   std::vector<double> rising;
   for (double v : values)
     if (std::isfinite(v)) rising.push_back(v);
@@ -63,18 +63,18 @@ PlotAxis axisOf(const std::vector<double>& values) {
   // Values that are one but for rounding are drawn as one.
   constexpr double kLeastSpan = 1e-6;
   const double size = std::max(std::abs(least), std::abs(most)), span = most - least;
-  const double margin = span > kLeastSpan * size ? kMargin * span : size > 0.0 ? 0.05 * size : 1.0;
+  const double margin = span > kLeastSpan * size ? kAxisMargin * span : size > 0.0 ? 0.05 * size : 1.0;
   if (!std::isfinite(span + 2.0 * margin) || !std::isfinite(most + margin) || !std::isfinite(least - margin) || least - margin >= most + margin) return {};
-  return axisBetween(least - margin, most + margin);
+  return plainAxis(least - margin, most + margin);
 }
 
-PlotAxis axisOf(const Factor& choice, std::size_t characters) {
-  PlotAxis axis;
+SweepAxis axisOfWords(const Factor& choice, std::size_t characters) {
+  SweepAxis axis;
   const std::size_t count = choice.choices.size();
   axis.low = -0.5, axis.high = static_cast<double>(count) - 0.5;
   for (std::size_t i = 0; i < count; ++i)
     axis.ticks.push_back(
-        {(static_cast<double>(i) + 0.5) / static_cast<double>(count), shortened(choice.choices[i], std::max<std::size_t>(characters / count, 2))});
+        {(static_cast<double>(i) + 0.5) / static_cast<double>(count), shortenedText(choice.choices[i], std::max<std::size_t>(characters / count, 2))});
   return axis;
 }
 
