@@ -8,18 +8,6 @@
 namespace pitviper {
 namespace {
 
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (char c : text) {
-    if (c == '&') out += "&amp;";
-    else if (c == '<') out += "&lt;";
-    else if (c == '>') out += "&gt;";
-    else if (c == '"') out += "&quot;";
-    else out += c;
-  }
-  return out;
-}
-
 std::string base64(const std::string& bytes) {
   std::string out(4 * ((bytes.size() + 2) / 3) + 1, '\0');
   const int size =
@@ -37,6 +25,18 @@ constexpr const char* kStyle =
     "img{max-width:100%;height:auto;border:1px solid #d8dce3}figure{margin:.8em 0}figcaption{color:#5a6372;font-size:.9em}";
 
 }  // namespace
+
+std::string HtmlPage::escaped(const std::string& text) {
+  std::string out;
+  for (char c : text) {
+    if (c == '&') out += "&amp;";
+    else if (c == '<') out += "&lt;";
+    else if (c == '>') out += "&gt;";
+    else if (c == '"') out += "&quot;";
+    else out += c;
+  }
+  return out;
+}
 
 HtmlPage::HtmlPage(const std::string& title, const std::string& mark) : title_(title), mark_(mark) {}
 
@@ -75,6 +75,10 @@ void HtmlPage::charts(const std::vector<Chart>& charts, const std::filesystem::p
   }
   std::error_code ignored;
   std::filesystem::remove(png, ignored);
+}
+
+void HtmlPage::drawing(const std::string& svg, const std::string& says) {
+  body_ += "<figure>" + svg + "<figcaption>" + escaped(says) + "</figcaption></figure>\n";
 }
 
 void HtmlPage::link(const std::string& file, const std::string& says) { body_ += "<p><a href=\"" + escaped(file) + "\">" + escaped(says) + "</a></p>\n"; }

@@ -24,10 +24,15 @@ class HtmlPage {
   void picture(const std::filesystem::path& png, const std::string& says);
   /// Charts in two columns, drawn in `folder` and put into the page; where they cannot be drawn it says why.
   void charts(const std::vector<Chart>& charts, const std::filesystem::path& folder, const std::string& says);
+  /// A drawing: an element of SVG as it is, whose texts are escaped already.
+  void drawing(const std::string& svg, const std::string& says);
   /// A file beside the page.
   void link(const std::string& file, const std::string& says);
   /// Errors: OutputError, and what `mayReplace` throws.
   void write(const std::filesystem::path& file, const MayReplace& mayReplace = {}) const;
+
+  /// Text as HTML and SVG have it, in quotes too.
+  static std::string escaped(const std::string& text);
 
  private:
   std::string title_, mark_, body_;
