@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <iterator>
 #include <optional>
 #include <string_view>
 
@@ -49,9 +50,9 @@ PartChoice readPartChoice(const std::string& text, const Location& where) {
   return *choice;
 }
 
-std::vector<int> samplesOf(const PartChoice& choice, int samples) {
-  std::vector<int> own;
-  for (long long sample = choice.part; sample < samples; sample += choice.of) own.push_back(static_cast<int>(sample));
+std::vector<Sample> samplesOf(const PartChoice& choice, const std::vector<Sample>& all) {
+  std::vector<Sample> own;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(own), [&](const Sample& s) { return choice.has(s.number); });
   return own;
 }
 

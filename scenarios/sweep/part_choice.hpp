@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/sweep/sweep.hpp"
 #include "sim/parameters/error.hpp"
 
 namespace pitviper {
@@ -25,8 +26,8 @@ struct PartChoice {
 /// Of "3/40". Errors: UserError.
 PartChoice readPartChoice(const std::string& text, const Location& where);
 
-/// Its samples of a sweep of so many, ascending.
-std::vector<int> samplesOf(const PartChoice& choice, int samples);
+/// Its samples among all, in their order.
+std::vector<Sample> samplesOf(const PartChoice& choice, const std::vector<Sample>& all);
 
 /// FOLDER/parts/part_3_of_40.sqlite
 std::filesystem::path partFile(const std::filesystem::path& folder, const PartChoice& choice);

@@ -1,7 +1,8 @@
 #!/bin/bash
 # Slurm on this machine alone, for a test: its own folder for configuration, state, spool, key and socket, its own free ports, no systemd, nothing in /etc.
 # Needs root and the programs of the packages slurmctld, slurmd, slurm-client and munge.
-#   slurm_machine.sh start FOLDER [NODES]      FOLDER is made (it must not be there); NODES are two unless told otherwise: node1, node2 ...
+#   slurm_machine.sh start FOLDER [NODES [ID]] FOLDER is made (it must not be there); NODES are two unless told otherwise: node1, node2 ...; where the process
+#                                              ID has ended, it stops by itself
 #   slurm_machine.sh kill-node FOLDER NODE     as a node that dies: SIGKILL to its daemon and to all that its jobs started
 #   slurm_machine.sh revive-node FOLDER NODE   its daemon again
 #   slurm_machine.sh stop FOLDER               ends everything and removes FOLDER
@@ -14,7 +15,7 @@ fail() {
 }
 
 usage() {
-  sed -n '2,8p' "$0" >&2
+  sed -n '2,9p' "$0" >&2
   exit 2
 }
 
@@ -70,11 +71,12 @@ nodesUp() {
 }
 
 start() {
-  local nodes=${1:-2} n ports='' names='' host
+  local nodes=${1:-2} owner=${2:-} n ports='' host
   [ "$(id -u)" = 0 ] || fail "must be started by root"
   for program in munged slurmctld slurmd sbatch sinfo; do
     command -v $program >/dev/null || fail "$program is not there; apt-get install slurmctld slurmd slurm-client munge"
   done
+  case $folder in *[!A-Za-z0-9_./-]*) fail "$folder: Slurm's configuration holds letters, digits and _./- in a path" ;; esac
   [ ${#folder} -le 80 ] || fail "$folder: too long for the name of a socket"
   mkdir "$folder" || fail "$folder cannot be made"
   mkdir "$folder/logs" "$folder/state" "$folder/spool"
@@ -137,7 +139,19 @@ CONF
   done
   waitFor 60 nodesUp "$nodes"
   trap - ERR INT TERM
+  if [ -n "$owner" ]; then
+    setsid "$0" follow "$folder" "$owner" </dev/null >/dev/null 2>&1 &
+  fi
   echo "SLURM_CONF=$folder/slurm.conf"
+}
+
+# Ends with the machine, or ends it when its owner has ended.
+follow() {
+  while kill -0 "$1" 2>/dev/null; do
+    [ -f "$folder/munge.key" ] || return 0
+    sleep 1
+  done
+  stop
 }
 
 stop() {
@@ -155,6 +169,7 @@ shift 2
 case $command in
   start) start "$@" ;;
   stop) stop ;;
+  follow) follow "$@" ;;
   kill-node)
     [ $# = 1 ] || usage
     [ -n "$(processes "$1")" ] || fail "no node $1 runs in $folder"
