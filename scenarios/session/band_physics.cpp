@@ -1,5 +1,6 @@
 #include "scenarios/session/band_physics.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "scenarios/session/array_checks.hpp"
@@ -45,11 +46,15 @@ std::vector<double> spectralBodies(const char* function, std::span<const double>
 
 Spectrum kernelOf(const Responsivity& band, LightUnit unit) { return unit == LightUnit::Photons ? band.spectrum() * photonsPerJoule() : band.spectrum(); }
 
-/// One node that stands for a whole band: the places of the house's integral over it, with their weights times the kernel.
+/// One node that stands for a whole band: the places of the house's integral over it, with their weights times the kernel. An octave at a time: what is
+/// longer is divided evenly there, too coarsely at its short end.
 std::vector<SpectralNode> bandNode(const Responsivity& band, LightUnit unit) {
   const Spectrum kernel = kernelOf(band, unit);
+  std::vector<double> edges = kernel.knots();
+  for (double um = 2.0 * band.low_um(); um < band.high_um(); um *= 2.0) edges.push_back(um);
+  std::sort(edges.begin(), edges.end());
   std::vector<SpectralNode> one(1);
-  for (const QuadratureNode& n : fineNodes(band.low_um(), band.high_um(), kernel.knots(), 16))
+  for (const QuadratureNode& n : fineNodes(band.low_um(), band.high_um(), edges, 16))
     if (const double weight = n.weight * kernel(n.x); weight != 0.0) one.front().members.push_back({n.x, weight});
   return one;
 }
