@@ -6,6 +6,7 @@
 
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/process.hpp"
+#include "scenarios/sweep/sweep_command.hpp"
 #include "scenarios/view/view_command.hpp"
 #include "sim/frame/version.hpp"
 
@@ -15,7 +16,7 @@ using namespace pitviper;
 
 /// As `pitviper --help` lists them; those of one first word together, the plain one before the others.
 std::vector<CommandLine> commands() {
-  return {runCommand(),       viewCommand(),       checkCommand(),      planCommand(),     auditCommand(),         infoCommand(),          integrateCommand(),
+  return {runCommand(),       sweepCommand(),      viewCommand(),       checkCommand(),      planCommand(),     auditCommand(),         infoCommand(),          integrateCommand(),
           streamCommand(),    selfTestCommand(),   measureCommand(),    benchCommand(),    scenarioBenchCommand(), accuracyBenchCommand(), firstBenchCommand(),
           onceBenchCommand(), guardBenchCommand(), phongBenchCommand(), materialCommand(), atmosphereCommand(),    skyCommand(),           keysCommand()};
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 #include "sensors/display_codes.hpp"
 #include "sensors/fixed_pattern.hpp"
@@ -126,9 +127,12 @@ class DetectorStage final : public SensorStage {
     if (law_.lag > 0.0 || law_.timeConstant_s > 0.0) memory_.apply(channel, tick.frame, memoryWeights(law_, tick.step_s), picture);
     const std::vector<float>* flicker = nullptr;
     const double octave = std::sqrt(law_.flickerVariance(tick.step_s));
-    if (octave > 0.0) flicker = &flicker_.try_emplace(channel, tick.seed, channel, picture.size()).first->second.at(tick.frame);
+    // Golden ratio: a draw of 0 is the seed's own, and neighbouring ones are far apart.
+    const std::uint64_t seed = tick.seed ^ (tick.noise * 0x9e3779b97f4a7c15u);
+    if (std::exchange(flickerSeed_, seed) != seed) flicker_.clear();
+    if (octave > 0.0) flicker = &flicker_.try_emplace(channel, seed, channel, picture.size()).first->second.at(tick.frame);
     const auto frame = static_cast<std::uint32_t>(tick.frame) + 1;
-    const auto source = [&](NoiseEffect e) { return NoiseSource(tick.seed, channel, frame, e); };
+    const auto source = [&](NoiseEffect e) { return NoiseSource(seed, channel, frame, e); };
     const NoiseSource shot = source(NoiseEffect::Shot), ofRow = source(NoiseEffect::Row),
                       ofColumn = source(NoiseEffect::Column);
     const double darkMean = law_.darkCurrent_per_s * tick.exposure_s, most = law_.mostCount(), gain = law_.gain * tick.gain;
@@ -190,6 +194,7 @@ class DetectorStage final : public SensorStage {
   DetectorDesign design_;
   std::map<std::uint32_t, FixedPattern> patterns_;  ///< by channel
   std::map<std::uint32_t, FlickerNoise> flicker_;
+  std::uint64_t flickerSeed_ = 0;
   SignalMemory memory_;
 };
 

@@ -1,16 +1,20 @@
 #include "scenarios/commands/child_run.hpp"
 
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
-#include <atomic>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
+#include <exception>
+#include <mutex>
 #include <stdexcept>
+#include <utility>
 
 #include "scenarios/commands/process.hpp"
 
@@ -51,10 +55,14 @@ struct SpawnSettings {
   posix_spawnattr_t attributes;
 };
 
-}  // namespace
+/// A process and the pipe that it writes into.
+struct Child {
+  pid_t process = 0;
+  int output = -1;
+};
 
-ChildResult runChild(const Arguments& arguments, const std::map<std::string, std::string>& environment) {
-  std::vector<std::string> words{"pitviper"}, variables = environmentWith(environment);
+Child started(const Arguments& arguments, std::vector<std::string>& variables) {
+  std::vector<std::string> words{"pitviper"};
   words.insert(words.end(), arguments.begin(), arguments.end());
   int ends[2];
   if (::pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(std::string("cannot make a pipe: ") + std::strerror(errno));
@@ -66,36 +74,77 @@ ChildResult runChild(const Arguments& arguments, const std::map<std::string, std
   sigemptyset(&none);
   posix_spawnattr_setsigmask(&settings.attributes, &none);  // this process's threads have theirs blocked: one waits for them
   posix_spawnattr_setflags(&settings.attributes, POSIX_SPAWN_SETSIGMASK);
-  std::atomic<pid_t> child{0};
-  std::atomic<bool> ended{false};
-  const EndsItself ending([&] {
-    ended = true;
-    if (const pid_t now = child; now > 0) ::kill(now, SIGTERM);
-  });
-  pid_t made = 0;
-  const int failed = ::posix_spawn(&made, "/proc/self/exe", &settings.files, &settings.attributes, pointersTo(words).data(), pointersTo(variables).data());
+  Child child{0, ends[0]};
+  const int failed = ::posix_spawn(&child.process, "/proc/self/exe", &settings.files, &settings.attributes, pointersTo(words).data(), pointersTo(variables).data());
   ::close(ends[1]);
   if (failed != 0) {
     ::close(ends[0]);
     throw std::runtime_error(std::string("cannot start another process: ") + std::strerror(failed));
   }
-  child = made;
-  if (ended) ::kill(made, SIGTERM);
-  ChildResult result;
+  return child;
+}
+
+}  // namespace
+
+std::vector<ChildResult> runChildren(const std::vector<Arguments>& all, const std::map<std::string, std::string>& environment, const std::function<void()>& tick) {
+  std::vector<std::string> variables = environmentWith(environment);
+  std::vector<Child> children;
+  std::vector<ChildResult> results(all.size());
+  std::mutex mutex;
+  bool ended = false;
+  const auto end = [&](const Child& c) {
+    if (c.process > 0) ::kill(c.process, SIGTERM);
+  };
+  const EndsItself ending([&] {
+    const std::lock_guard lock(mutex);
+    ended = true;
+    std::for_each(children.begin(), children.end(), end);
+  });
+  std::exception_ptr notStarted;
+  for (const Arguments& arguments : all) {
+    const std::lock_guard lock(mutex);
+    try {
+      children.push_back(started(arguments, variables));
+    } catch (const std::exception&) {
+      notStarted = std::current_exception();
+      std::for_each(children.begin(), children.end(), end);
+      break;
+    }
+    if (ended) end(children.back());
+  }
+  constexpr int kTick_ms = 200;
   std::array<char, 4096> buffer{};
   for (;;) {
-    const ssize_t count = ::read(ends[0], buffer.data(), buffer.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) break;
-    result.output.append(buffer.data(), static_cast<std::size_t>(count));
+    std::vector<pollfd> pipes;
+    for (const Child& c : children) pipes.push_back({c.output, POLLIN, 0});
+    if (std::all_of(children.begin(), children.end(), [](const Child& c) { return c.output < 0; })) break;
+    const int ready = ::poll(pipes.data(), pipes.size(), tick ? kTick_ms : -1);
+    for (std::size_t k = 0; ready > 0 && k < children.size(); ++k) {
+      if (pipes[k].fd < 0 || !pipes[k].revents) continue;
+      const ssize_t count = ::read(pipes[k].fd, buffer.data(), buffer.size());
+      if (count < 0 && errno == EINTR) continue;
+      if (count > 0) {
+        results[k].output.append(buffer.data(), static_cast<std::size_t>(count));
+        continue;
+      }
+      ::close(std::exchange(children[k].output, -1));
+    }
+    if (tick) tick();
   }
-  ::close(ends[0]);
-  int status = 0;
-  while (::waitpid(made, &status, 0) < 0 && errno == EINTR) {
+  for (std::size_t k = 0; k < children.size(); ++k) {
+    int status = 0;
+    while (::waitpid(children[k].process, &status, 0) < 0 && errno == EINTR) {
+    }
+    const std::lock_guard lock(mutex);
+    children[k].process = 0;
+    results[k].code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
-  child = 0;
-  result.code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
-  return result;
+  if (notStarted) std::rethrow_exception(notStarted);
+  return results;
+}
+
+ChildResult runChild(const Arguments& arguments, const std::map<std::string, std::string>& environment) {
+  return runChildren({arguments}, environment).front();
 }
 
 }  // namespace pitviper

@@ -34,12 +34,6 @@ double predictedRate(const Plan& plan, double subpixels, double yardstick, bool 
   return yardstick / (kFrame + subpixels * each);
 }
 
-double bytesOf(const RenderTables& t) {
-  size_t floats = t.media.size() + t.node.size() + t.ambient.size() + t.weights.size();
-  for (const SurfaceTables* s : {&t.solid, &t.layer}) floats += s->rows.size() + s->hemispherical.size() + s->columns.size() + s->transmittance.size();
-  return static_cast<double>(floats * sizeof(float));
-}
-
 /// The plan beside those of three times and a third of its accuracy: what is bought next, and what less would save.
 std::string ladderOf(const Simulation& sim, const Camera& camera, const Plan& plan, double subpixels) {
   constexpr double kStep = 3.0, kLeast = 0.1;
@@ -79,7 +73,7 @@ int plan(const PlanWish& w) {
                     secondsSince(start),
                     subpixels,
                     0.0,
-                    bytesOf(makeTables(sim, plan)),
+                    shadingTableBytes(sim, plan),
                     buffered,
                     plan.terms.air && plan.air.elevations > 0,
                     eye.camera && eye.camera->follower

@@ -102,6 +102,13 @@ NodeCost costOf(const Plan& plan) {
   return cost;
 }
 
+double shadingTableBytes(const Simulation& sim, const Plan& plan) {
+  const RenderTables t = makeTables(sim, plan);
+  size_t floats = t.media.size() + t.node.size() + t.ambient.size() + t.weights.size();
+  for (const SurfaceTables* s : {&t.solid, &t.layer}) floats += s->rows.size() + s->hemispherical.size() + s->columns.size() + s->transmittance.size();
+  return static_cast<double>(floats * sizeof(float));
+}
+
 std::string planText(const PlannedEye& eye) {
   const Plan& plan = eye.plan;
   const auto names = slotNames(plan, eye.outputs);

@@ -34,6 +34,9 @@ NodeCost costOf(const Plan& plan);
 /// A line of `plan` for each of some accuracies: what the budget buys there, and what a frame costs for it. The plan's own among them.
 std::string ladderText(const std::vector<Plan>& plans, double asked, double subpixels);
 
+/// Of the tables of surfaces and media that its shading programs read.
+double shadingTableBytes(const Simulation& simulation, const Plan& plan);
+
 std::string planText(const PlannedEye& eye);
 /// One JSON object.
 std::string planJson(const PlannedEye& eye);

@@ -23,4 +23,7 @@ struct ExpandedScenario {
 ExpandedScenario expandScenario(const std::string& text, const std::string& fileName, const std::filesystem::path& base,
                                 const std::vector<std::string>& overrides, const Libraries& libraries, const std::vector<std::filesystem::path>& roots);
 
+/// What readScenarioText() makes of it. Errors: UserError.
+Simulation readExpanded(const ExpandedScenario& expanded, const std::string& fileName, const std::filesystem::path& base, const Libraries& libraries);
+
 }  // namespace pitviper

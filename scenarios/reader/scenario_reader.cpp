@@ -60,7 +60,10 @@ Libraries findLibraries() {
 
 Simulation readScenarioText(const std::string& text, const std::string& fileName, const std::filesystem::path& base, const std::vector<std::string>& overrides,
                             const Libraries& libraries, const std::vector<std::filesystem::path>& roots) {
-  const ExpandedScenario expanded = expandScenario(text, fileName, base, overrides, libraries, roots);
+  return readExpanded(expandScenario(text, fileName, base, overrides, libraries, roots), fileName, base, libraries);
+}
+
+Simulation readExpanded(const ExpandedScenario& expanded, const std::string& fileName, const std::filesystem::path& base, const Libraries& libraries) {
   const Value& tree = expanded.tree;
   const Record r(tree, tables::scenario());
   Simulation sim;

@@ -19,6 +19,7 @@ class Distribution {
 
   /// The value that a share u of all draws lies below, 0 < u < 1. Of a list: the shares of its values follow each other in the order of the list.
   double quantile(double u) const;
+  bool isLogarithmic() const { return kind_ == Kind::LogUniform; }
   /// Number of values of a list; 0: any between its bounds.
   int levels() const { return static_cast<int>(values_.size()); }
 

@@ -11,7 +11,7 @@
 namespace pitviper {
 
 struct WrittenFactor {
-  Factor factor;
+  SweepFactor factor;
   std::string key;  ///< path of the scenario's key; empty: used as $name only
   Location where, keyPlace;
   std::optional<Distribution> distribution;  ///< none where a table has its values

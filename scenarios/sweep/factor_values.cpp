@@ -11,7 +11,7 @@
 namespace pitviper {
 namespace {
 
-std::size_t factorNamed(std::string_view name, const Location& where, const std::vector<Factor>& factors) {
+std::size_t factorNamed(std::string_view name, const Location& where, const std::vector<SweepFactor>& factors) {
   std::vector<std::string> names;
   for (std::size_t f = 0; f < factors.size(); ++f) {
     if (factors[f].name == name) return f;
@@ -51,7 +51,7 @@ std::vector<TextPiece> piecesOf(std::string_view text, const Location& where) {
   return pieces;
 }
 
-void addNames(const Value& value, const std::vector<Factor>& factors, std::set<std::string>& names) {
+void addNames(const Value& value, const std::vector<SweepFactor>& factors, std::set<std::string>& names) {
   if (value.kind == Value::Kind::Scalar)
     for (const TextPiece& piece : piecesOf(value.text, value.where))
       if (piece.factor) names.insert(factors[factorNamed(piece.text, value.where, factors)].name);
@@ -62,7 +62,7 @@ void addNames(const Value& value, const std::vector<Factor>& factors, std::set<s
 std::string evaluatedFor(std::string_view expression, const Location& where, const DrawnFactors& drawn) {
   return evaluate(expression, where, [&](std::string_view name) -> WrittenQuantity {
     const std::size_t f = factorNamed(name, where, drawn.factors);
-    const Factor& factor = drawn.factors[f];
+    const SweepFactor& factor = drawn.factors[f];
     if (factor.choices.empty()) return {drawn.values[f], factor.unit};
     const std::string word = factorText(factor, drawn.values[f]);
     const auto number = splitQuantity(word);
@@ -75,12 +75,12 @@ std::string evaluatedFor(std::string_view expression, const Location& where, con
 
 }  // namespace
 
-std::string factorText(const Factor& factor, double value) {
+std::string factorText(const SweepFactor& factor, double value) {
   if (!factor.choices.empty()) return factor.choices[static_cast<std::size_t>(value)];
   return numberText(value) + (factor.unit.empty() ? "" : " " + factor.unit);
 }
 
-std::set<std::string> factorsIn(const Value& value, const std::vector<Factor>& factors) {
+std::set<std::string> factorsIn(const Value& value, const std::vector<SweepFactor>& factors) {
   std::set<std::string> names;
   addNames(value, factors, names);
   return names;
@@ -109,7 +109,7 @@ Value workedOut(const Value& value, const DrawnFactors& drawn) {
   return out;
 }
 
-Constraint readConstraint(const Value& value, const std::vector<Factor>& factors) {
+Constraint readConstraint(const Value& value, const std::vector<SweepFactor>& factors) {
   const std::string text = readText(value, "a constraint");
   const std::size_t at = text.find_first_of("<>");
   const std::size_t length = at != std::string::npos && at + 1 < text.size() && text[at + 1] == '=' ? 2 : 1;

@@ -11,15 +11,15 @@ namespace pitviper {
 
 /// What one sample's factors are.
 struct DrawnFactors {
-  const std::vector<Factor>& factors;
+  const std::vector<SweepFactor>& factors;
   const std::vector<double>& values;
 };
 
 /// A factor's value as scenarios have it: "3.25 km", a choice's word. Numbers read back as the same double.
-std::string factorText(const Factor& factor, double value);
+std::string factorText(const SweepFactor& factor, double value);
 
 /// The names of all factors behind dollars in a value. Errors: UserError at the scalar for what is no factor, and for a dollar without a name.
-std::set<std::string> factorsIn(const Value& value, const std::vector<Factor>& factors);
+std::set<std::string> factorsIn(const Value& value, const std::vector<SweepFactor>& factors);
 
 /// The value with every scalar worked out: one that begins with '=' is an expression (scenarios/reader/expression.hpp), `$name` and `${name}` are the factor's
 /// value as text, alone or within a text, `$$` is a dollar. Errors: UserError at the scalar.
@@ -33,7 +33,7 @@ struct Constraint {
 };
 
 /// Errors: UserError for what is no comparison, or holds what is no factor.
-Constraint readConstraint(const Value& value, const std::vector<Factor>& factors);
+Constraint readConstraint(const Value& value, const std::vector<SweepFactor>& factors);
 /// Errors: UserError for what evaluate() refuses and for two sides of different kinds.
 bool meets(const Constraint& constraint, const DrawnFactors& drawn);
 

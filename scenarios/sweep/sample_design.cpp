@@ -94,8 +94,8 @@ std::vector<double> SampleDesign::point(int number, int attempt) const {
 }
 
 SaltelliRow saltelliRow(int sample, std::size_t factors) {
-  const int rows = static_cast<int>(factors) + 2;
-  return {sample / rows, sample % rows};
+  const int d = static_cast<int>(factors), place = sample % (d + 2);
+  return {sample / (d + 2), place == 0 ? 0 : place == 1 ? d + 1 : place - 1};
 }
 
 std::uint64_t sampleSeed(std::uint64_t sweepSeed, int sample) { return randomBits(sweepSeed, DrawnFor::Seed, static_cast<std::uint32_t>(sample)) >> 11; }

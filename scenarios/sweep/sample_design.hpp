@@ -47,8 +47,8 @@ class SampleDesign {
 /// Of one sweep.
 constexpr long long kMostSamples = 10000000;
 
-/// Which matrix a sample of SobolIndices belongs to. The d + 2 rows of base point 0 come first, then those of base point 1 and so on: each time A, then AB_1 to
-/// AB_d, then B. AB_i is A with its factor i (from 1) out of B.
+/// Which matrix a sample of SobolIndices belongs to. The d + 2 rows of base point 0 come first, then those of base point 1 and so on: each time A, then B, then
+/// AB_1 to AB_d. AB_i is A with its factor i (from 1) out of B.
 struct SaltelliRow {
   int base = 0;    ///< row of the matrix, from 0
   int matrix = 0;  ///< 0: A; 1 to d: AB_i; d + 1: B

@@ -10,7 +10,7 @@
 namespace pitviper {
 
 /// What varies. Its values are numbers in `unit`; of a choice the place of its word among `choices`, from 0.
-struct Factor {
+struct SweepFactor {
   std::string name;
   std::string unit;  ///< as the sweep's file has it: "km"; empty: dimensionless
   std::vector<std::string> choices = {};

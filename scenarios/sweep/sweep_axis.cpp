@@ -68,7 +68,7 @@ SweepAxis axisHolding(const std::vector<double>& values) {
   return plainAxis(least - margin, most + margin);
 }
 
-SweepAxis axisOfWords(const Factor& choice, std::size_t characters) {
+SweepAxis axisOfWords(const SweepFactor& choice, std::size_t characters) {
   SweepAxis axis;
   const std::size_t count = choice.choices.size();
   axis.low = -0.5, axis.high = static_cast<double>(count) - 0.5;

@@ -29,6 +29,6 @@ SweepAxis axisHolding(const std::vector<double>& values);
 SweepAxis plainAxis(double low, double high);
 
 /// Words side by side, at 0, 1, ...; each cut to its part of the `characters` that have room.
-SweepAxis axisOfWords(const Factor& choice, std::size_t characters);
+SweepAxis axisOfWords(const SweepFactor& choice, std::size_t characters);
 
 }  // namespace pitviper

@@ -33,13 +33,13 @@ std::string csvOf(const SweepIdentity& identity, std::vector<SweepRow> rows) {
   std::sort(rows.begin(), rows.end(), [](const SweepRow& a, const SweepRow& b) { return a.sample < b.sample; });
   const std::vector<MeasureColumn> columns = measureColumns(identity);
   std::string csv = "sample,seed";
-  for (const Factor& f : identity.factors) csv += "," + (f.choices.empty() ? csvHead(f.name, f.unit) : csvCell(f.name));
+  for (const SweepFactor& f : identity.factors) csv += "," + (f.choices.empty() ? csvHead(f.name, f.unit) : csvCell(f.name));
   for (const MeasureColumn& c : columns) csv += "," + csvHead(c.name, c.unit);
   csv += ",why\n";
   for (const SweepRow& r : rows) {
     csv += std::to_string(r.sample) + "," + std::to_string(r.seed);
     for (std::size_t i = 0; i < identity.factors.size(); ++i) {
-      const Factor& f = identity.factors[i];
+      const SweepFactor& f = identity.factors[i];
       csv += "," + (f.choices.empty() ? numberThatReadsBack(r.factors.at(i)) : csvCell(choiceWord(f, r.factors.at(i))));
     }
     for (std::size_t i = 0; i < columns.size(); ++i) csv += "," + (r.measures.empty() && !r.why.empty() ? "" : numberThatReadsBack(r.measures.at(i)));

@@ -49,9 +49,24 @@ std::optional<Sample> SweepDraw::sample(int number) const {
       throw UserError(constraint->where, "none of " + std::to_string(kMostTries) + " draws of sample " + std::to_string(number) + " meets the constraints",
                       "constraints that more of them meet", "loosen them, or draw the factors from where they hold");
   }
+  setBy(s);
+  return s;
+}
+
+std::optional<Sample> SweepDraw::sampleAt(int number, std::size_t factor, double value) const {
+  Sample s;
+  s.number = number;
+  s.seed = sampleSeed(plan_.seed, number);
+  s.values = values(number, 0);
+  s.values[factor] = value;
+  if (broken({plan_.factors, s.values})) return std::nullopt;
+  setBy(s);
+  return s;
+}
+
+void SweepDraw::setBy(Sample& s) const {
   const DrawnFactors drawn{plan_.factors, s.values};
   for (const auto& [path, value] : plan_.sets) s.sets.push_back(path + "=" + yamlLine(workedOut(value, drawn)));
-  return s;
 }
 
 }  // namespace pitviper

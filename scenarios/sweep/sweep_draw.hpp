@@ -21,7 +21,7 @@ class SweepDraw {
   /// `design` gives the points, or `table` the values where it has no design: columns by factor are `columns`.
   struct Plan {
     std::uint64_t seed = 0;
-    std::vector<Factor> factors;
+    std::vector<SweepFactor> factors;
     std::vector<Distribution> distributions;  ///< by factor, of a design
     std::vector<SetByPath> sets;              ///< of each sample
     std::vector<Constraint> constraints;
@@ -38,11 +38,17 @@ class SweepDraw {
   /// an expression cannot be worked out, and for a place of a choice that there is not.
   std::optional<Sample> sample(int number) const;
 
+  /// The same with one factor at a value of its own: the others are drawn as ever, once. Nothing where that breaks a constraint.
+  std::optional<Sample> sampleAt(int number, std::size_t factor, double value) const;
+  /// What a factor is drawn from; null where a table has its values.
+  const Distribution* distributionOf(std::size_t factor) const { return plan_.design ? &plan_.distributions[factor] : nullptr; }
+
   static constexpr int kMostTries = 1000;
 
  private:
   std::vector<double> values(int number, int attempt) const;
   std::vector<double> valuesOfRow(int number) const;
+  void setBy(Sample& sample) const;
   const Constraint* broken(const DrawnFactors& drawn) const;
   Plan plan_;
 };

@@ -90,8 +90,8 @@ class SweepReader {
     if (const Value* sinks = r.find("sinks")) sweep_.sinks = *sinks;
     makeDesign(r);
     sweep_.sha256 = sha256(sweep_.text);
-    const SweepDraw draw(std::move(plan_));
-    drawAll(draw, r);
+    sweep_.draw = std::make_shared<const SweepDraw>(std::move(plan_));
+    drawAll(*sweep_.draw, r);
     return std::move(sweep_);
   }
 
@@ -240,7 +240,7 @@ class SweepReader {
         throw UserError(column.where, "two columns are called " + tokenOf(column.name), "a name of its own for each", "remove one of the two");
       names.push_back(column.name);
     }
-    for (Factor& factor : plan_.factors) {
+    for (SweepFactor& factor : plan_.factors) {
       const auto found = std::find(names.begin(), names.end(), factor.name);
       if (found == names.end()) {
         std::vector<std::string> shown;

@@ -1,11 +1,13 @@
 #pragma once
 // Reads a sweep's file and draws all of its samples.
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "scenarios/sweep/sample_design.hpp"
 #include "scenarios/sweep/sweep.hpp"
+#include "scenarios/sweep/sweep_draw.hpp"
 #include "sim/parameters/table.hpp"
 
 namespace pitviper {
@@ -19,10 +21,11 @@ struct Sweep {
   int frame = 0;                  ///< of the scenario, that is drawn
   long long seed = 1;
   Design kind = Design::Random;
-  std::vector<Factor> factors;
+  std::vector<SweepFactor> factors;
   /// Of the whole design, by rising number; those that break a constraint are left out and their numbers with them, so that numbers may have gaps (never of
   /// random and sobol_indices).
   std::vector<Sample> samples;
+  std::shared_ptr<const SweepDraw> draw;  ///< that these came from
   std::vector<Measure> measures;
   Value sinks;  ///< as written: a list; null where absent
   bool keepsFrames = false;

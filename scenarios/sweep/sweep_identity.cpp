@@ -44,7 +44,7 @@ void setMeasureUnits(SweepIdentity& identity, const std::vector<std::string>& un
   }
 }
 
-const std::string& choiceWord(const Factor& choice, double value) {
+const std::string& choiceWord(const SweepFactor& choice, double value) {
   // Written so that a NaN is refused.
   if (!(value >= 0.0 && value < static_cast<double>(choice.choices.size())) || value != static_cast<double>(static_cast<std::size_t>(value)))
     throw std::invalid_argument("choiceWord: '" + choice.name + "' has no such choice");
@@ -60,7 +60,7 @@ void refuseUnfitNames(const SweepIdentity& identity, const std::string& file) {
                       "names of factors and measures that differ, upper and lower case being one, other than sample, seed and why", "rename the " + what);
   };
   const Location here{file, 0, 0, -1};
-  for (const Factor& f : identity.factors) {
+  for (const SweepFactor& f : identity.factors) {
     take(f.name, here, "factor");
     for (const std::string& word : f.choices) refuseUnprintable(word, here, "choice of '" + f.name + "'");
     if (std::set<std::string>(f.choices.begin(), f.choices.end()).size() != f.choices.size())

@@ -10,7 +10,7 @@ namespace pitviper {
 struct SweepIdentity {
   std::string name, sha256, scenario, version;
   int samples = 0;
-  std::vector<Factor> factors;
+  std::vector<SweepFactor> factors;
   std::vector<Measure> measures;
 };
 
@@ -25,7 +25,7 @@ std::vector<MeasureColumn> measureColumns(const SweepIdentity& identity);
 void setMeasureUnits(SweepIdentity& identity, const std::vector<std::string>& units);
 
 /// The word of a choice. std::invalid_argument where `value` is none of its places.
-const std::string& choiceWord(const Factor& choice, double value);
+const std::string& choiceWord(const SweepFactor& choice, double value);
 
 /// Factors and measures must make a table: names that differ (but for upper and lower case) from each other and from sample, seed and why, of printable
 /// characters; choices of words that differ; 1900 columns at most. Errors: UserError at the measure's place, or at `file`.

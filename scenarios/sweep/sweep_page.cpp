@@ -44,7 +44,7 @@ void tellSamples(HtmlPage& page, const SweepIdentity& sweep, const std::vector<S
                  (isSaltelli ? " They are a design of Saltelli." : ""));
   std::vector<std::vector<std::string>> factors;
   for (std::size_t i = 0; i < sweep.factors.size(); ++i) {
-    const Factor& f = sweep.factors[i];
+    const SweepFactor& f = sweep.factors[i];
     std::string words;
     for (const std::string& word : f.choices) words += (words.empty() ? "" : ", ") + word;
     double least = NAN, most = NAN;

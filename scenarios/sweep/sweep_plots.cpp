@@ -137,7 +137,7 @@ void drawBars(const SweepPanel& panel, const std::string& title, const std::stri
   frame.drawing.line(x(0.0), frame.top, x(0.0), frame.bottom, kFrameColour);
 }
 
-void drawScatter(const SweepPanel& panel, const Factor& factor, const MeasureColumn& measure, const std::vector<double>& x, const std::vector<double>& y,
+void drawScatter(const SweepPanel& panel, const SweepFactor& factor, const MeasureColumn& measure, const std::vector<double>& x, const std::vector<double>& y,
                  std::size_t mostDots) {
   const PanelFrame frame = panelFrame(panel);
   const bool words = !factor.choices.empty();

@@ -37,7 +37,7 @@ double barsHeight(const std::vector<SweepBar>& bars);
 void drawBars(const SweepPanel& panel, const std::string& title, const std::string& second, std::vector<SweepBar> bars, double low);
 
 /// A dot for each sample, `mostDots` at most, evenly taken from all. Choices lie side by side, each spread out by the sample's number.
-void drawScatter(const SweepPanel& panel, const Factor& factor, const MeasureColumn& measure, const std::vector<double>& x, const std::vector<double>& y,
+void drawScatter(const SweepPanel& panel, const SweepFactor& factor, const MeasureColumn& measure, const std::vector<double>& x, const std::vector<double>& y,
                  std::size_t mostDots);
 
 }  // namespace pitviper

@@ -21,7 +21,7 @@ std::vector<std::pair<std::string, std::string>> keysOf(const SweepIdentity& s) 
 /// Tables and the text that makes them, as sqlite_schema has it. Columns of numbers have no type: SQLite's REAL forgets the sign of -0.
 std::map<std::string, std::string> tablesOf(const SweepIdentity& identity) {
   std::string samples = "CREATE TABLE samples(sample INTEGER PRIMARY KEY, seed TEXT";
-  for (const Factor& f : identity.factors) samples += ", " + quotedName(f.name) + (f.choices.empty() ? "" : " TEXT");
+  for (const SweepFactor& f : identity.factors) samples += ", " + quotedName(f.name) + (f.choices.empty() ? "" : " TEXT");
   for (const MeasureColumn& c : measureColumns(identity)) samples += ", " + quotedName(c.name);
   return {{"sweep", "CREATE TABLE sweep(key TEXT PRIMARY KEY, value TEXT)"},
           {"columns", "CREATE TABLE columns(place INTEGER PRIMARY KEY, kind TEXT, name TEXT, unit TEXT, choices TEXT)"},
@@ -34,7 +34,7 @@ struct StoredColumn {
 
 std::vector<StoredColumn> storedColumns(const SweepIdentity& identity) {
   std::vector<StoredColumn> columns;
-  for (const Factor& f : identity.factors) {
+  for (const SweepFactor& f : identity.factors) {
     std::string words;
     for (const std::string& word : f.choices) words += word + "\n";
     columns.push_back({"factor", f.name, f.unit, words});
@@ -214,7 +214,7 @@ void SweepStore::insert(const SweepRow& row) {
   add.bind(++place, static_cast<long long>(row.sample));
   add.bind(++place, std::to_string(row.seed));
   for (std::size_t i = 0; i < row.factors.size(); ++i) {
-    const Factor& f = identity_.factors[i];
+    const SweepFactor& f = identity_.factors[i];
     if (f.choices.empty()) add.bind(++place, row.factors[i]);
     else add.bind(++place, choiceWord(f, row.factors[i]));
   }
@@ -252,7 +252,7 @@ SweepRow SweepStore::read(const SqliteStatement& s) const {
   const auto end = seed.data() + seed.size();
   if (const auto parsed = std::from_chars(seed.data(), end, row.seed); parsed.ec != std::errc() || parsed.ptr != end)
     file_.refuseDamaged("a seed is no number");
-  for (const Factor& f : identity_.factors) {
+  for (const SweepFactor& f : identity_.factors) {
     if (f.choices.empty()) {
       row.factors.push_back(s.number(column++));
       continue;

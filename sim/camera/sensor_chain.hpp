@@ -48,6 +48,9 @@ class SensorChain {
   /// Of an output per etendue: what an even field of radiance gives each pixel, as a projected solid angle, through all of the optics; as a calibration would
   /// find it. Of the last tick that was run.
   const std::vector<double>& seenSolidAngles(std::size_t output) const { return lines_[places_[output].line]->seenSolidAngles(places_[output].output); }
+  /// Another draw of the noise of pictures to come (SensorTick::noise); 0: the scenario's own.
+  void setNoise(std::uint64_t noise) { noise_ = noise; }
+  std::uint64_t noise() const { return noise_; }
   /// Pixels whose counts say nothing, of the last tick that was run.
   CountMarks marks() const;
   /// The cell in the middle of a pixel of the camera, in pictures of drawnCamera().
@@ -58,6 +61,7 @@ class SensorChain {
     std::size_t line, output;  ///< the second: among the line's
   };
   int width_, cells_, margin_px_;  ///< cells of a row
+  std::uint64_t noise_ = 0;
   std::vector<std::unique_ptr<StageLine>> lines_;
   std::vector<Place> places_;  ///< of the camera's outputs
 };

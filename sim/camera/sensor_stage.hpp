@@ -19,6 +19,7 @@ struct SensorTick {
   double focalLength_m = 0.0;                     ///< at this time; 0: the camera's own
   std::uint64_t seed = 0;                         ///< of the scenario and this camera
   double gain = 1.0;                              ///< factor of the detector's own, at this time
+  std::uint64_t noise = 0;                        ///< another draw of all that changes from frame to frame; what is fixed stays the seed's
   ChannelValues exposures_s = {}, gains = {1.0};  ///< of all channels: exposure_s and gain are of those that a stage sees
 };
 

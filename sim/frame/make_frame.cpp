@@ -274,7 +274,8 @@ void addAxis(Frame& frame, const Camera& camera) {
 
 namespace {
 
-SensorTick sensorTick(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number) {
+SensorTick sensorTick(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number,
+                      const SensorChain& chain) {
   const CameraState eye = cameraAt(camera, state);
   const Pinhole& now = eye.pinhole;
   return {number,
@@ -285,6 +286,7 @@ SensorTick sensorTick(const Simulation& sim, const Camera& camera, const CameraI
           now.focalLength_m,
           noiseSeed(sim, camera),
           eye.gains.common,
+          chain.noise(),
           eye.exposures_s,
           eye.gains};
 }
@@ -295,7 +297,7 @@ std::vector<std::vector<float>> sensed(const Simulation& sim, const Camera& came
                                        SensorChain& chain) {
   std::vector<std::vector<float>> drawn;
   for (size_t o = 0; o < camera.outputs.size(); ++o) drawn.push_back(valuesOf(nameOf(camera.name, number), camera.outputs[o], o, image));
-  return chain.run(std::move(drawn), image.solidAngles->projected_sr, sensorTick(sim, camera, image, state, number), pointsOf(camera, image));
+  return chain.run(std::move(drawn), image.solidAngles->projected_sr, sensorTick(sim, camera, image, state, number, chain), pointsOf(camera, image));
 }
 
 Frame makeFrame(const Simulation& sim, const Camera& camera, const CameraImage& image, const WorldState& state, int number, SensorChain* chain,

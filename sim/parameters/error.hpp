@@ -1,6 +1,7 @@
 #pragma once
 // What a user did wrong, where, and what to do about it. Every mistake in a user's files ends here:
 // one line `file:line:col: what is wrong; expected ...; fix: ...` and exit code 2.
+#include <memory>
 #include <stdexcept>
 #include <string>
 
@@ -25,9 +26,18 @@ struct Location {
 class UserError : public std::runtime_error {
  public:
   UserError(const Location& where, const std::string& wrong, const std::string& expected = "", const std::string& fix = "")
-      : std::runtime_error(compose(where, wrong, expected, fix)) {}
+      : std::runtime_error(compose(where, wrong, expected, fix)),
+        parts_(std::make_shared<const Parts>(Parts{where, wrong, expected, fix})) {}
+
+  /// What its message is made of.
+  struct Parts {
+    Location where;
+    std::string wrong, expected, fix;
+  };
+  const Parts& parts() const { return *parts_; }
 
  private:
+  std::shared_ptr<const Parts> parts_;  ///< shared: copying an exception must not throw
   static std::string compose(const Location& where, const std::string& wrong, const std::string& expected, const std::string& fix) {
     std::string message = where.text() + ": " + wrong;
     if (!expected.empty()) message += "; expected " + expected;

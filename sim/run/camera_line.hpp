@@ -29,6 +29,10 @@ class CameraLine {
   void warmUp(int first);
   /// As if `first` were the first frame: what detectors and followers remember is forgotten.
   void startAgain(int first, const ShaderLibrary& library);
+  /// Another draw of the detector's noise in frames to come; 0: the scenario's own.
+  void setNoise(std::uint64_t noise) {
+    if (chain_) chain_->setNoise(noise);
+  }
   /// Every rung draws a picture that nobody gets: the first frame waits for no compiler.
   void prepare(const StateAt& stateAt, double time_s);
 

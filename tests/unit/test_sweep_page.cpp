@@ -140,7 +140,7 @@ TEST(SweepPage, Axes) {
   for (double same : {0.0, 1e-300, -7.0, 3e8}) EXPECT_NEAR(axisHolding(std::vector<double>{same, same}).place(same), 0.5, 1e-9) << same;
   EXPECT_TRUE(axisHolding(std::vector<double>{-1e308, 1e308}).ticks.empty());
   EXPECT_TRUE(axisHolding(std::vector<double>{NAN}).ticks.empty());
-  const SweepAxis words = axisOfWords(Factor{"sky", "", {"clear", "überall bewölkt"}}, 14);
+  const SweepAxis words = axisOfWords(SweepFactor{"sky", "", {"clear", "überall bewölkt"}}, 14);
   EXPECT_EQ(words.place(1.0), 0.75);
   EXPECT_EQ(words.ticks[0].label, "clear");
   EXPECT_EQ(words.ticks[1].label, "überal…");

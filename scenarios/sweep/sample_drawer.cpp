@@ -1,0 +1,90 @@
+#include "scenarios/sweep/sample_drawer.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "scenarios/sweep/frame_measures.hpp"
+#include "sim/gl/context.hpp"
+
+namespace pitviper {
+namespace {
+
+SceneSource sourceOf(const Sweep& sweep, const std::vector<std::filesystem::path>& roots) {
+  return {sweep.scenario.string(), std::nullopt, {}, sweep.sets, roots};
+}
+
+std::vector<std::string> setsOf(const Sweep& sweep, const Sample& sample) {
+  std::vector<std::string> sets = sweep.sets;
+  sets.insert(sets.end(), sample.sets.begin(), sample.sets.end());
+  return sets;
+}
+
+}  // namespace
+
+SampleDrawer::SampleDrawer(const Sweep& sweep, const std::vector<std::filesystem::path>& roots)
+    : sweep_(sweep), scene_(sourceOf(sweep, roots)), simulation_(scene_.simulation()) {
+  if (sweep.frame >= simulation_->time.frames)
+    throw UserError({sweep.file, 0, 0, -1}, "the scenario has no frame " + std::to_string(sweep.frame), "0 to " + std::to_string(simulation_->time.frames - 1),
+                    "write another 'frame:'");
+  refuseUnknownMeasures(*simulation_, sweep.measures);
+  for (const Measure& m : sweep.measures) {
+    python_.push_back(m.kind == Measure::Kind::Python ? std::make_unique<PythonMeasure>(m) : nullptr);
+    for (std::size_t k = 0; k < m.names.size(); ++k) units_.push_back(k < m.units.size() ? m.units[k] : std::string());
+  }
+  scene_.keepDrawings();
+  scene_.change(setsOf(sweep, sweep.samples.front()));
+}
+
+DrawnSample SampleDrawer::draw(const Sample& sample, bool allCameras) {
+  DrawnSample drawn{{sample.number, sample.seed, sample.values, std::vector<double>(units_.size(), NAN), {}}, {}};
+  try {
+    scene_.change(setsOf(sweep_, sample));
+    const auto sim = scene_.simulation();
+    std::set<std::size_t> cameras;
+    for (const Measure& m : sweep_.measures) cameras.insert(cameraOf(*sim, m));
+    for (std::size_t c = 0; c < sim->cameras.size() && (allCameras || cameras.empty()); ++c) cameras.insert(c);
+    for (const std::size_t c : cameras) {
+      DrawWish wish;
+      wish.camera = c;
+      wish.time_s = sim->time.at(sweep_.frame);
+      wish.noise = sample.seed;
+      std::shared_ptr<Frame> frame = scene_.draw(wish).frame;
+      frame->number = sample.number;
+      frame->attributes.push_back({"pitviper.sweep", sweep_.name});
+      frame->attributes.push_back({"pitviper.sample", sample.number});
+      frame->attributes.push_back({"pitviper.sample_seed", std::to_string(sample.seed)});
+      for (std::size_t f = 0; f < sweep_.factors.size(); ++f) {
+        const SweepFactor& factor = sweep_.factors[f];
+        const std::string name = "factor." + factor.name;
+        if (factor.choices.empty()) frame->attributes.push_back({name + (factor.unit.empty() ? "" : " [" + factor.unit + "]"), sample.values[f]});
+        else frame->attributes.push_back({name, factor.choices[static_cast<std::size_t>(sample.values[f])]});
+      }
+      drawn.frames.push_back(std::move(frame));
+    }
+    measure(sample, drawn);
+  } catch (const UserError& e) {
+    drawn.row.why = e.what();
+  } catch (const GlError& e) {
+    drawn.row.why = e.what();
+  }
+  return drawn;
+}
+
+void SampleDrawer::measure(const Sample& sample, DrawnSample& drawn) {
+  std::size_t column = 0;
+  for (std::size_t k = 0; k < sweep_.measures.size(); ++k) {
+    const Measure& m = sweep_.measures[k];
+    const std::string& camera = scene_.simulation()->cameras[cameraOf(*scene_.simulation(), m)].name;
+    const auto frame = std::find_if(drawn.frames.begin(), drawn.frames.end(), [&](const auto& f) { return f->camera == camera; });
+    if (python_[k]) {
+      for (const double v : python_[k]->of(**frame, sweep_.factors, sample)) drawn.row.measures[column++] = v;
+      continue;
+    }
+    const MeasuredValue value = measured(**frame, m);
+    if (units_[column].empty()) units_[column] = value.unit;
+    drawn.row.measures[column++] = value.value;
+  }
+}
+
+}  // namespace pitviper
