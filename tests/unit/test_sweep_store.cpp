@@ -197,7 +197,7 @@ TEST(SweepStore, AnotherSweepsFileIsRefused) {
   EXPECT_TRUE(saidIn(said([](auto& s) { s.sha256 = "77"; }), "have changed since"));
   EXPECT_TRUE(saidIn(said([](auto& s) { s.scenario = "sea.yaml"; }), "its scenario is 'jet.yaml'"));
   EXPECT_TRUE(saidIn(said([](auto& s) { s.version = "1.1"; }), "its version is '1.0'"));
-  EXPECT_TRUE(saidIn(said([](auto& s) { s.samples = 9; }), "its samples is '8'"));
+  EXPECT_TRUE(saidIn(said([](auto& s) { s.samples = 9; }), "its number of samples is '8', not '9'"));
   EXPECT_TRUE(saidIn(said([](auto& s) { s.factors[0].name = "height"; }), "the factor 'distance' where this one has the factor 'height'"));
   EXPECT_TRUE(saidIn(said([](auto& s) { s.factors[0].unit = "m"; }), "in 'km', not in 'm'"));
   EXPECT_TRUE(saidIn(said([](auto& s) { s.factors[1].choices.pop_back(); }), "other choices"));
