@@ -21,6 +21,9 @@ SqliteFile::SqliteFile(const std::filesystem::path& file, bool mayMake, std::chr
                                    SQLITE_OPEN_READWRITE | SQLITE_OPEN_EXRESCODE | SQLITE_OPEN_FULLMUTEX | (mayMake ? SQLITE_OPEN_CREATE : 0), nullptr);
   database_.reset(opened);
   if (!opened) throw std::bad_alloc();
+  // Where a file may not be made SQLite tries to read it, and misses it.
+  if (code != SQLITE_OK && sqlite3_system_errno(opened) == ENOENT && std::filesystem::exists(std::filesystem::absolute(file).parent_path(), failure))
+    throw OutputError(file, "cannot make the file", EACCES);
   if (code != SQLITE_OK) refuse(code);
   sqlite3_busy_timeout(opened, static_cast<int>(patience.count()));
   // A file from elsewhere brings no functions of its own.

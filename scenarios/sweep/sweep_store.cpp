@@ -115,7 +115,7 @@ void SweepStore::compare(bool mayLearn) {
     for (SqliteStatement s(file_, "SELECT key, value FROM sweep"); s.step();) stored[s.text(0)] = s.text(1);
     for (const auto& [key, value] : keysOf(identity_)) {
       if (!stored.contains(key)) file_.refuseDamaged("the sweep's " + key + " is missing");
-      const std::string &there = stored[key], both = "its " + key + " is '" + there + "', not '" + value + "'";
+      const std::string &there = stored[key], both = "its " + (key == "samples" ? "number of samples" : key) + " is '" + there + "', not '" + value + "'";
       if (there == value) continue;
       if (key == "format") refuseForeign(file_.path(), both, "use the version of this program that made it");
       if (key == "version") refuseForeign(file_.path(), both, "finish it with the version that began it, or begin anew in another file");
