@@ -24,7 +24,7 @@ const std::vector<std::string> kNotOfEnvironment = {"SBATCH_ARRAY_INX", "SBATCH_
 
 bool isControl(char c) { return static_cast<unsigned char>(c) < 32 || c == 127; }
 
-fs::path whole(const fs::path& path) { return fs::absolute(path).lexically_normal(); }
+fs::path wholePath(const fs::path& path) { return fs::absolute(path).lexically_normal(); }
 
 /// By the rules of #SBATCH lines one word that stands for `text`: in double quotes, where a backslash takes what follows as it is.
 std::string sbatchWord(const std::string& text) {
@@ -47,11 +47,11 @@ void checkOption(const std::string& option) {
 }
 
 /// A name that no job of another folder has.
-std::string jobName(const fs::path& out) { return "pitviper-" + sha256(whole(out).string()).substr(0, 12); }
+std::string jobName(const fs::path& out) { return "pitviper-" + sha256(wholePath(out).string()).substr(0, 12); }
 
 /// `log`: in OUT/logs, as Slurm has names of files.
-std::string head(const SlurmWish& wish, const std::string& about, const std::string& log, const std::vector<std::string>& own) {
-  std::string logs = (whole(wish.out) / "logs").string();
+std::string scriptHead(const SlurmWish& wish, const std::string& about, const std::string& log, const std::vector<std::string>& own) {
+  std::string logs = (wholePath(wish.out) / "logs").string();
   if (std::any_of(logs.begin(), logs.end(), [](char c) { return isControl(c) || c == '\\'; }))
     throw UserError({readable(wish.out.string()), 0, 0, -1}, "Slurm can name no file in a folder whose name has a backslash or a control character",
                     "another folder", "choose another one with --out");
@@ -64,14 +64,14 @@ std::string head(const SlurmWish& wish, const std::string& about, const std::str
     checkOption(option);
     text += "#SBATCH " + sbatchWord(option) + "\n";
   }
-  if (!wish.home.empty()) text += "export PITVIPER_HOME=" + shellWord(whole(wish.home).string()) + "\n";
+  if (!wish.home.empty()) text += "export PITVIPER_HOME=" + shellWord(wholePath(wish.home).string()) + "\n";
   return text + "export LP_NUM_THREADS=\"${LP_NUM_THREADS:-$SLURM_CPUS_PER_TASK}\"\n";
 }
 
 /// `task`: the words that are this job's.
 std::string commandOf(const SlurmWish& wish, const std::string& task) {
-  std::string line = "exec " + shellWord(whole(wish.program).string()) + " sweep " + shellWord(whole(wish.sweepFile).string()) + " --out " +
-                     shellWord(whole(wish.out).string()) + " " + task;
+  std::string line = "exec " + shellWord(wholePath(wish.program).string()) + " sweep " + shellWord(wholePath(wish.sweepFile).string()) + " --out " +
+                     shellWord(wholePath(wish.out).string()) + " " + task;
   for (const std::string& word : wish.carried) line += " " + shellWord(word);
   return line + "\n";
 }
@@ -185,17 +185,17 @@ std::vector<int> partsLeft(int parts, const std::function<bool(int part)>& isCom
 }
 
 std::string slurmScript(const SlurmWish& wish, const std::vector<int>& partsToRun) {
-  return head(wish, "Each task draws one part of a sweep and goes on where it was. `pitviper sweep ... --slurm`, said again, submits what is left.",
-              "part_%a.log", {"--array=" + taskRanges(partsToRun)}) +
+  return scriptHead(wish, "Each task draws one part of a sweep and goes on where it was. `pitviper sweep ... --slurm`, said again, submits what is left.",
+                    "part_%a.log", {"--array=" + taskRanges(partsToRun)}) +
          commandOf(wish, "--part \"${SLURM_ARRAY_TASK_ID}/" + std::to_string(wish.parts) + "\"");
 }
 
 std::string mergeScript(const SlurmWish& wish) {
-  return head(wish, "Merges the parts of a sweep, and says which samples lack.", "merge.log", {"--kill-on-invalid-dep=no"}) + commandOf(wish, "--merge");
+  return scriptHead(wish, "Merges the parts of a sweep, and says which samples lack.", "merge.log", {"--kill-on-invalid-dep=no"}) + commandOf(wish, "--merge");
 }
 
 SubmittedJob submit(const SlurmWish& wish, const std::vector<int>& partsToRun) {
-  const fs::path out = whole(wish.out), script = out / "sweep.sbatch", merge = out / "merge.sbatch";
+  const fs::path out = wholePath(wish.out), script = out / "sweep.sbatch", merge = out / "merge.sbatch";
   if (partsToRun.empty())
     throw UserError({"--slurm", 0, 0, -1}, "no part of the sweep is left to draw", "one that is not complete",
                     "merge what is there: write --merge instead of --slurm");

@@ -92,7 +92,7 @@ start() {
   host=$(hostname -s)
   ports=$(freePort)
   {
-    # A dead node is noticed after SlurmdTimeout, and what it ran starts again after cred_expire.
+    # A dead node is noticed after SlurmdTimeout, and what it ran starts again after cred_expire: nothing but what asks for it.
     cat <<CONF
 ClusterName=test
 SlurmctldHost=$host(127.0.0.1)
@@ -116,6 +116,7 @@ SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
 SlurmdParameters=config_overrides
 SchedulerParameters=batch_sched_delay=1,sched_interval=2,bf_interval=5
+JobRequeue=0
 ReturnToService=2
 SlurmdTimeout=6
 SlurmctldTimeout=30

@@ -167,7 +167,7 @@ TEST_F(SweepOnSlurm, ANodeDiesAndNothingLacks) {
       [&] {
         onNode = partsOn("node2");
         for (const int part : onNode)
-          if (const int rows = rowsOf(part); rows > 2 && rows < kSamples / kParts / 2) return true;
+          if (const int rows = rowsOf(part); rows > 0 && rows < kSamples / kParts) return true;
         return false;
       },
       std::chrono::milliseconds(20)))

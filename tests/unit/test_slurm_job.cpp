@@ -33,7 +33,7 @@ std::string contentOf(const fs::path& file) {
 
 /// What is said when `act` is refused; empty where it is not.
 template <class Act>
-std::string refusal(const Act& act) {
+std::string slurmRefusal(const Act& act) {
   try {
     act();
   } catch (const UserError& e) {
@@ -75,20 +75,20 @@ TEST(PartChoice, IsReadAndRefused) {
                            "4294967299/4294967336",
                            "3\\40",
                            "3/40\n"}) {
-    const std::string said = refusal([&] { readPartChoice(text, kPart); });
+    const std::string said = slurmRefusal([&] { readPartChoice(text, kPart); });
     EXPECT_EQ(said.rfind("--part: '", 0), 0u) << "'" << text << "': " << said;
     EXPECT_NE(said.find("' is no part of a sweep; expected K/N, whole numbers"), std::string::npos) << said;
     EXPECT_NE(said.find("; fix: "), std::string::npos) << said;
   }
 }
 
-std::vector<Sample> numbered(const std::vector<int>& numbers) {
+std::vector<Sample> samplesNumbered(const std::vector<int>& numbers) {
   std::vector<Sample> all(numbers.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i].number = numbers[i];
   return all;
 }
 
-std::vector<int> numbersOf(const std::vector<Sample>& samples) {
+std::vector<int> sampleNumbers(const std::vector<Sample>& samples) {
   std::vector<int> numbers;
   for (const Sample& s : samples) numbers.push_back(s.number);
   return numbers;
@@ -107,7 +107,7 @@ TEST(PartChoice, EverySampleIsOfOnePart) {
     std::multiset<int> all;
     std::size_t fewest = 1000, most = 0;
     for (int part = 0; part < of; ++part) {
-      const auto own = numbersOf(samplesOf({part, of}, numbered(each)));
+      const auto own = sampleNumbers(samplesOf({part, of}, samplesNumbered(each)));
       all.insert(own.begin(), own.end());
       fewest = std::min(fewest, own.size()), most = std::max(most, own.size());
     }
@@ -115,7 +115,7 @@ TEST(PartChoice, EverySampleIsOfOnePart) {
     EXPECT_EQ(std::vector<int>(all.begin(), all.end()), each);
   }
   // A sample is of its part by its number, whichever others there are.
-  EXPECT_EQ(numbersOf(samplesOf({3, 40}, numbered({3, 4, 40, 83, 84, 123, 2147483643}))), (std::vector<int>{3, 83, 123, 2147483643}));
+  EXPECT_EQ(sampleNumbers(samplesOf({3, 40}, samplesNumbered({3, 4, 40, 83, 84, 123, 2147483643}))), (std::vector<int>{3, 83, 123, 2147483643}));
 }
 
 TEST(PartChoice, FilesOfPartsAreFound) {
@@ -134,19 +134,20 @@ TEST(PartChoice, FilesOfPartsAreFound) {
   EXPECT_EQ(found.files.at(0), partFile(folder.path(), {0, 40}));
   EXPECT_EQ(found.files.at(3), partFile(folder.path(), {3, 40}));
   const std::string parts = (folder.path() / "parts").string();
-  EXPECT_EQ(refusal([&] { partFilesIn(folder.path(), 20); }), parts +
-                                                                  ": parts of another division lie here, of 40; expected none, or those of 20; fix: use 40 "
-                                                                  "parts again, remove them, or choose another folder with --out");
+  EXPECT_EQ(slurmRefusal([&] { partFilesIn(folder.path(), 20); }),
+            parts +
+                ": parts of another division lie here, of 40; expected none, or those of 20; fix: use 40 "
+                "parts again, remove them, or choose another folder with --out");
   folder.put("parts/part_3_of_7.sqlite", "x");
   EXPECT_EQ(
-      refusal([&] { partFilesIn(folder.path()); }),
+      slurmRefusal([&] { partFilesIn(folder.path()); }),
       parts + ": parts of several divisions lie here, of 7 and of 40; expected those of one; fix: remove the others, or choose another folder with --out");
   fs::remove(folder.path() / "parts/part_3_of_7.sqlite");
   fs::create_directories(folder.path() / "parts/part_9_of_40.sqlite");
-  EXPECT_NE(refusal([&] { partFilesIn(folder.path()); }).find("has the name of a part, and is no file"), std::string::npos);
+  EXPECT_NE(slurmRefusal([&] { partFilesIn(folder.path()); }).find("has the name of a part, and is no file"), std::string::npos);
   const TemporaryFolder other;
   other.put("parts", "a file");
-  EXPECT_NE(refusal([&] { partFilesIn(other.path()); }).find("cannot be looked through"), std::string::npos);
+  EXPECT_NE(slurmRefusal([&] { partFilesIn(other.path()); }).find("cannot be looked through"), std::string::npos);
 }
 
 TEST(SlurmJob, RangesAreCompact) {
@@ -226,18 +227,19 @@ TEST_F(SlurmScript, RefusesWhatSlurmWouldMisread) {
   for (const char* option : {"-p fast", "--partition fast", "partition=fast", "--", "", "--comment=a\n#SBATCH --array=0-9", "--Partition=x"}) {
     SlurmWish w = wish();
     w.options = {option};
-    EXPECT_NE(refusal([&] { slurmScript(w, {0}); }).find("is no option of sbatch in its long form; expected --name=value or --name; fix: "), std::string::npos)
+    EXPECT_NE(slurmRefusal([&] { slurmScript(w, {0}); }).find("is no option of sbatch in its long form; expected --name=value or --name; fix: "),
+              std::string::npos)
         << option;
   }
   for (const char* option : {"--array=0-3", "--job-name=mine", "--wrap=true"}) {
     SlurmWish w = wish();
     w.options = {option};
-    EXPECT_NE(refusal([&] { slurmScript(w, {0}); }).find("the sweep needs --"), std::string::npos) << option;
+    EXPECT_NE(slurmRefusal([&] { slurmScript(w, {0}); }).find("the sweep needs --"), std::string::npos) << option;
   }
   for (const char* name : {"back\\slash", "line\nend"}) {
     SlurmWish w = wish();
     w.out = name;
-    EXPECT_NE(refusal([&] { slurmScript(w, {0}); }).find("Slurm can name no file in a folder"), std::string::npos) << name;
+    EXPECT_NE(slurmRefusal([&] { slurmScript(w, {0}); }).find("Slurm can name no file in a folder"), std::string::npos) << name;
   }
 }
 
@@ -266,7 +268,7 @@ class SlurmSubmit : public SlurmScript {
   std::string file(const std::string& name) const { return contentOf(folder_.path() / name); }
   std::string kept() const { return contentOf(wish().out / "slurm_job.txt"); }
   std::string refused(const std::vector<int>& parts = {0, 1}) const {
-    return refusal([&] { submit(wish(), parts); });
+    return slurmRefusal([&] { submit(wish(), parts); });
   }
   /// Its place, which leads the message, left out.
   std::string refusedOf(const std::string& name) const {
@@ -324,7 +326,7 @@ TEST_F(SlurmSubmit, OneJobAtATime) {
   folder_.put("queue", "13\n");
   SlurmWish moved = wish();
   moved.out = folder_.path() / "moved";
-  EXPECT_NE(refusal([&] { submit(moved, {0}); }).find("job 13 of this folder is still"), std::string::npos);
+  EXPECT_NE(slurmRefusal([&] { submit(moved, {0}); }).find("job 13 of this folder is still"), std::string::npos);
   EXPECT_EQ(file("queue_asked"), "--noheader|--name=" + name + "|--format=%F|");
 }
 
