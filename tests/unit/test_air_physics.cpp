@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "atmosphere/absorber_table.hpp"
+#include "atmosphere/homogeneous.hpp"
 #include "scenarios/reader/library_air.hpp"
 #include "scenarios/session/air_physics.hpp"
 #include "sim/radiometry/constants.hpp"
@@ -180,7 +181,10 @@ TEST(AirPhysics, BodiesAreLeftOut) {
 
 // Two halves of a band, of extinctions that differ: each with its share of the source's light, by the series of the classical integral.
 TEST(AirPhysics, BandsWeighWhatTheSourceSends) {
-  const Simulation sim = under("atmosphere: {extinction: {wavelength: um, unit: /km, values: [[2, 0.1], [4, 0.1], [4, 1], [6, 1]]}}\n");
+  Simulation sim = under("");
+  HomogeneousAir air;
+  air.extinction_per_m = Spectrum(Spectrum::Table{{2.0, 4.0, 4.0, 6.0}, {1e-4, 1e-4, 1e-3, 1e-3}, Outside::Error, "two halves"});
+  sim.air = makeHomogeneousAir(air);
   for (const double kelvin : {300.0, 1000.0}) {
     const double low = blackBodyBand(3.0, 4.0, kelvin), high = blackBodyBand(4.0, 5.0, kelvin),
                  expected = (low * std::exp(-0.2) + high * std::exp(-2.0)) / (low + high);
