@@ -14,7 +14,7 @@
 namespace pitviper {
 namespace {
 
-constexpr const char *kPath = "path()", *kSky = "sky_radiance()", *kBand = "band_transmittance()";
+constexpr const char *kPathCall = "path()", *kSkyCall = "sky_radiance()", *kBandCall = "band_transmittance()";
 
 /// The air with what lights it, without all that stands in it.
 Simulation airAlone(const Simulation& of) {
@@ -32,9 +32,9 @@ Simulation airAlone(const Simulation& of) {
   return air;
 }
 
-bool hasAir(const Simulation& simulation) { return simulation.air && simulation.air->traits().any; }
+bool hasSomeAir(const Simulation& simulation) { return simulation.air && simulation.air->traits().any; }
 
-void requirePlace(const char* function, const char* name, const glm::dvec3& place) {
+void requireAirPlace(const char* function, const char* name, const glm::dvec3& place) {
   const double all[] = {place.x, place.y, place.z};
   requireFinite({function, name}, all);
 }
@@ -45,9 +45,9 @@ struct AirLine {
 };
 
 /// Errors: UserError where the earth is in the way of places that both stand above it.
-AirLine lineBetween(const char* function, const Simulation& air, const glm::dvec3& from, const glm::dvec3& to) {
-  requirePlace(function, "from", from);
-  requirePlace(function, "to", to);
+AirLine airLineBetween(const char* function, const Simulation& air, const glm::dvec3& from, const glm::dvec3& to) {
+  requireAirPlace(function, "from", from);
+  requireAirPlace(function, "to", to);
   AirLine line{glm::length(to - from), {}};
   if (!(line.range_m > 0.0)) return line;
   line.direction = (to - from) / line.range_m;
@@ -61,7 +61,7 @@ AirLine lineBetween(const char* function, const Simulation& air, const glm::dvec
   return line;
 }
 
-AirRay rayOf(const Simulation& air, const glm::dvec3& from, const glm::dvec3& direction) {
+AirRay airRayOf(const Simulation& air, const glm::dvec3& from, const glm::dvec3& direction) {
   return {air.frame.height(from), glm::dot(direction, air.frame.up(from)), air.frame.earthRadius_m()};
 }
 
@@ -77,23 +77,23 @@ void requireAirData(const char* function, const Simulation& air, std::span<const
   requireData(air, all);
 }
 
-std::vector<SpectralNode> nodesAt(const Simulation& air, std::span<const double> wavelength_um) {
+std::vector<SpectralNode> airNodesAt(const Simulation& air, std::span<const double> wavelength_um) {
   std::vector<SpectralNode> nodes;
   for (const double um : wavelength_um) nodes.push_back(nodeAt(air, um));
   return nodes;
 }
 
 /// As the reference has them.
-Terms referenceTerms(const Simulation& air) {
+Terms referenceAirTerms(const Simulation& air) {
   Terms terms = termsOf(air);
   if (terms.streams > 0) terms.streams = kFinestStreams;
   return terms;
 }
 
 /// Radiance of a line that meets nothing: as far as a range, or to the end of the air and what lies behind.
-std::vector<double> lightAlong(const Simulation& air, const std::vector<SpectralNode>& nodes, const glm::dvec3& from, const glm::dvec3& direction,
-                               std::optional<double> range_m) {
-  const Terms terms = referenceTerms(air);
+std::vector<double> airLightAlong(const Simulation& air, const std::vector<SpectralNode>& nodes, const glm::dvec3& from, const glm::dvec3& direction,
+                                  std::optional<double> range_m) {
+  const Terms terms = referenceAirTerms(air);
   const NodeSpectra spectra(air, nodes, terms);
   const auto legs = terms.scatteredSun ? SunLegs::of(air.air, glm::dot(air.frame.up(glm::dvec3(0.0)), air.sun->toSun), air.frame.earthRadius_m()) : nullptr;
   const WorldState nothing;
@@ -110,53 +110,53 @@ std::vector<double> lightAlong(const Simulation& air, const std::vector<Spectral
 
 AirPath pathThrough(const Simulation& simulation, const glm::dvec3& from, const glm::dvec3& to, std::span<const double> wavelength_um) {
   const Simulation air = airAlone(simulation);
-  const AirLine line = lineBetween(kPath, air, from, to);
-  requireWavelengths({kPath, "wavelength_um"}, wavelength_um);
+  const AirLine line = airLineBetween(kPathCall, air, from, to);
+  requireWavelengths({kPathCall, "wavelength_um"}, wavelength_um);
   AirPath path{line.range_m, std::vector<double>(wavelength_um.size(), 0.0), std::vector<double>(wavelength_um.size(), 1.0),
                std::vector<double>(wavelength_um.size(), 0.0)};
-  if (!hasAir(air) || !(line.range_m > 0.0) || wavelength_um.empty()) return path;
-  requireAirData(kPath, air, wavelength_um);
-  const std::vector<SpectralNode> nodes = nodesAt(air, wavelength_um);
-  const AirAmounts powered = air.air->powered(air.air->amounts(rayOf(air, from, line.direction), line.range_m));
+  if (!hasSomeAir(air) || !(line.range_m > 0.0) || wavelength_um.empty()) return path;
+  requireAirData(kPathCall, air, wavelength_um);
+  const std::vector<SpectralNode> nodes = airNodesAt(air, wavelength_um);
+  const AirAmounts powered = air.air->powered(air.air->amounts(airRayOf(air, from, line.direction), line.range_m));
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     path.opticalDepth[i] = Atmosphere::depthOf(nodes[i].air, powered);
     path.transmittance[i] = std::exp(-path.opticalDepth[i]);
   }
-  path.pathRadiance = lightAlong(air, nodes, from, line.direction, line.range_m);
+  path.pathRadiance = airLightAlong(air, nodes, from, line.direction, line.range_m);
   return path;
 }
 
 std::vector<double> skyRadiance(const Simulation& simulation, const glm::dvec3& from, const glm::dvec3& direction, std::span<const double> wavelength_um) {
   const Simulation air = airAlone(simulation);
-  requirePlace(kSky, "from", from);
-  requirePlace(kSky, "direction", direction);
+  requireAirPlace(kSkyCall, "from", from);
+  requireAirPlace(kSkyCall, "direction", direction);
   const double length = glm::length(direction);
-  if (!(length > 0.0)) throw UserError({kSky, 0, 0, -1}, "a direction of length 0", "a vector towards the sky", "give one, such as [0, 0, 1]");
+  if (!(length > 0.0)) throw UserError({kSkyCall, 0, 0, -1}, "a direction of length 0", "a vector towards the sky", "give one, such as [0, 0, 1]");
   const glm::dvec3 unit = direction / length;
-  const AirRay ray = rayOf(air, from, unit);
+  const AirRay ray = airRayOf(air, from, unit);
   if (air.overEarth() && physics::groundRange(std::max(ray.height_m, 0.0), ray.sinElevation, ray.earthRadius_m) < physics::kFar)
-    throw UserError({kSky, 0, 0, -1}, print("a direction %.6g deg below the horizontal, which meets the earth", -glm::degrees(std::asin(ray.sinElevation))),
+    throw UserError({kSkyCall, 0, 0, -1}, print("a direction %.6g deg below the horizontal, which meets the earth", -glm::degrees(std::asin(ray.sinElevation))),
                     "one that meets the sky", "raise it");
-  requireAirData(kSky, air, wavelength_um);
+  requireAirData(kSkyCall, air, wavelength_um);
   if (wavelength_um.empty()) return {};
-  return lightAlong(air, nodesAt(air, wavelength_um), from, unit, {});
+  return airLightAlong(air, airNodesAt(air, wavelength_um), from, unit, {});
 }
 
 double bandTransmittance(const Simulation& simulation, const glm::dvec3& from, const glm::dvec3& to, const Responsivity& band, double source_K) {
   if (!(std::isfinite(source_K) && source_K > 0.0))
-    throw UserError({kBand, 0, 0, -1}, print("a source of %g K", source_K), "a temperature above 0 K", "give that of the body whose light is looked at");
+    throw UserError({kBandCall, 0, 0, -1}, print("a source of %g K", source_K), "a temperature above 0 K", "give that of the body whose light is looked at");
   // What lights the air takes nothing from a path.
   Simulation air;
   air.frame = simulation.frame, air.air = simulation.air;
-  const AirLine line = lineBetween(kBand, airAlone(simulation), from, to);
-  if (!hasAir(air) || !(line.range_m > 0.0)) return 1.0;
+  const AirLine line = airLineBetween(kBandCall, airAlone(simulation), from, to);
+  if (!hasSomeAir(air) || !(line.range_m > 0.0)) return 1.0;
   ChannelOutput output;
   output.channel = "responsivity";
-  output.where = {kBand, 0, 0, -1};
+  output.where = {kBandCall, 0, 0, -1};
   output.kernel = band.spectrum();
   output.bandLow_um = band.low_um(), output.bandHigh_um = band.high_um();
   cutToData(air, output);
-  const AirAmounts powered = air.air->powered(air.air->amounts(rayOf(air, from, line.direction), line.range_m));
+  const AirAmounts powered = air.air->powered(air.air->amounts(airRayOf(air, from, line.direction), line.range_m));
   double all = 0.0, passed = 0.0;
   for (const QuadratureNode& n : fineGrid(output.kernel, air)) {
     const double sent = n.weight * physics::planckRadiance(n.x, source_K);
@@ -164,7 +164,8 @@ double bandTransmittance(const Simulation& simulation, const glm::dvec3& from, c
     passed += sent * std::exp(-Atmosphere::depthOf(air.air->node(n.x), powered));
   }
   if (!(all > 0.0))
-    throw UserError({kBand, 0, 0, -1}, print("a source of %g K sends nothing in the band", source_K), "one that does", "give a hotter source, or another band");
+    throw UserError({kBandCall, 0, 0, -1}, print("a source of %g K sends nothing in the band", source_K), "one that does",
+                    "give a hotter source, or another band");
   return passed / all;
 }
 

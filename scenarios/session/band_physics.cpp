@@ -19,23 +19,23 @@ constexpr double kColdestBody_K = 20.0, kHottestBody_K = 20000.0;
 /// Of colder bodies not even 1000 um sees anything: exp(-719).
 constexpr double kDark_K = 0.02;
 
-enum class Wanted { Value, Slope };
+enum class OfBodies { Value, Slope };
 
 /// [temperature x nodes + node].
-std::vector<double> bodiesAt(const std::vector<SpectralNode>& nodes, std::span<const double> temperature_K, Wanted wanted) {
+std::vector<double> bodiesAt(const std::vector<SpectralNode>& nodes, std::span<const double> temperature_K, OfBodies wanted) {
   const NodePlanck planck(nodes);
   std::vector<double> all(temperature_K.size() * nodes.size(), 0.0), other(nodes.size());
   for (std::size_t t = 0; t < temperature_K.size(); ++t) {
     if (!(temperature_K[t] > kDark_K)) continue;
     const std::span<double> into = std::span(all).subspan(t * nodes.size(), nodes.size());
-    if (wanted == Wanted::Value) planck.at(temperature_K[t], into);
+    if (wanted == OfBodies::Value) planck.at(temperature_K[t], into);
     else planck.at(temperature_K[t], other, into);
   }
   return all;
 }
 
 std::vector<double> spectralBodies(const char* function, std::span<const double> wavelength_um, std::span<const double> temperature_K, LightUnit unit,
-                                   Wanted wanted) {
+                                   OfBodies wanted) {
   requireWavelengths({function, "wavelength_um"}, wavelength_um);
   requireNotNegative({function, "temperature_K"}, temperature_K);
   std::vector<SpectralNode> nodes(wavelength_um.size());
@@ -44,12 +44,14 @@ std::vector<double> spectralBodies(const char* function, std::span<const double>
   return bodiesAt(nodes, temperature_K, wanted);
 }
 
-Spectrum kernelOf(const Responsivity& band, LightUnit unit) { return unit == LightUnit::Photons ? band.spectrum() * photonsPerJoule() : band.spectrum(); }
+Spectrum responsivityKernel(const Responsivity& band, LightUnit unit) {
+  return unit == LightUnit::Photons ? band.spectrum() * photonsPerJoule() : band.spectrum();
+}
 
 /// One node that stands for a whole band: the places of the house's integral over it, with their weights times the kernel. An octave at a time: what is
 /// longer is divided evenly there, too coarsely at its short end.
 std::vector<SpectralNode> bandNode(const Responsivity& band, LightUnit unit) {
-  const Spectrum kernel = kernelOf(band, unit);
+  const Spectrum kernel = responsivityKernel(band, unit);
   std::vector<double> edges = kernel.knots();
   for (double um = 2.0 * band.low_um(); um < band.high_um(); um *= 2.0) edges.push_back(um);
   std::sort(edges.begin(), edges.end());
@@ -59,19 +61,19 @@ std::vector<SpectralNode> bandNode(const Responsivity& band, LightUnit unit) {
   return one;
 }
 
-Spectrum tableOf(std::span<const double> wavelength_um, std::span<const double> values, Outside outside) {
+Spectrum arrayTable(std::span<const double> wavelength_um, std::span<const double> values, Outside outside) {
   return Spectrum(Spectrum::Table{{wavelength_um.begin(), wavelength_um.end()}, {values.begin(), values.end()}, outside, "an array"});
 }
 
-Spectrum checkedTable(const char* function, std::span<const double> wavelength_um, std::span<const double> values) {
+Spectrum requireArrayTable(const char* function, std::span<const double> wavelength_um, std::span<const double> values) {
   requireSameLength({function, "values"}, values, wavelength_um);
   requireSpectralAxis({function, "wavelength_um"}, wavelength_um);
   requireFinite({function, "values"}, values);
-  return tableOf(wavelength_um, values, Outside::Error);
+  return arrayTable(wavelength_um, values, Outside::Error);
 }
 
-double integralWith(const char* function, std::span<const double> wavelength_um, std::span<const double> values, const Responsivity& band) {
-  const Spectrum table = checkedTable(function, wavelength_um, values);
+double integralOverBand(const char* function, std::span<const double> wavelength_um, std::span<const double> values, const Responsivity& band) {
+  const Spectrum table = requireArrayTable(function, wavelength_um, values);
   // Ends of tables made in wavenumbers are rounded.
   constexpr double kRounding = 1e-12;
   if (band.low_um() < table.validLow() * (1.0 - kRounding) || band.high_um() > table.validHigh() * (1.0 + kRounding))
@@ -82,30 +84,30 @@ double integralWith(const char* function, std::span<const double> wavelength_um,
   return (band.spectrum() * table).integral(std::max(band.low_um(), table.validLow()), std::min(band.high_um(), table.validHigh()));
 }
 
-constexpr const char* kResponsivity = "responsivity()";
+constexpr const char* kResponsivityCall = "responsivity()";
 
 Spectrum responseTable(std::span<const double> wavelength_um, std::span<const double> value) {
-  requireSameLength({kResponsivity, "value"}, value, wavelength_um);
-  requireSpectralAxis({kResponsivity, "wavelength_um"}, wavelength_um);
-  requireNotNegative({kResponsivity, "value"}, value);
-  return tableOf(wavelength_um, value, Outside::Zero);
+  requireSameLength({kResponsivityCall, "value"}, value, wavelength_um);
+  requireSpectralAxis({kResponsivityCall, "wavelength_um"}, wavelength_um);
+  requireNotNegative({kResponsivityCall, "value"}, value);
+  return arrayTable(wavelength_um, value, Outside::Zero);
 }
 
 Spectrum responseBand(double low_um, double high_um) {
   const double both[] = {low_um, high_um};
-  requireWavelengths({kResponsivity, "band_um"}, both);
-  requireSpectralAxis({kResponsivity, "band_um"}, both);
+  requireWavelengths({kResponsivityCall, "band_um"}, both);
+  requireSpectralAxis({kResponsivityCall, "band_um"}, both);
   return Spectrum::band(low_um, high_um);
 }
 
 }  // namespace
 
 std::vector<double> planckRadiance(std::span<const double> wavelength_um, std::span<const double> temperature_K, LightUnit unit) {
-  return spectralBodies("planck_radiance()", wavelength_um, temperature_K, unit, Wanted::Value);
+  return spectralBodies("planck_radiance()", wavelength_um, temperature_K, unit, OfBodies::Value);
 }
 
 std::vector<double> planckSlope(std::span<const double> wavelength_um, std::span<const double> temperature_K, LightUnit unit) {
-  return spectralBodies("planck_slope()", wavelength_um, temperature_K, unit, Wanted::Slope);
+  return spectralBodies("planck_slope()", wavelength_um, temperature_K, unit, OfBodies::Slope);
 }
 
 Responsivity::Responsivity(double low_um, double high_um) : Responsivity(responseBand(low_um, high_um)) {}
@@ -113,7 +115,7 @@ Responsivity::Responsivity(double low_um, double high_um) : Responsivity(respons
 Responsivity::Responsivity(std::span<const double> wavelength_um, std::span<const double> value) : Responsivity(responseTable(wavelength_um, value)) {}
 
 Responsivity::Responsivity(Spectrum spectrum) : spectrum_(std::move(spectrum)) {
-  const Location where{kResponsivity, 0, 0, -1};
+  const Location where{kResponsivityCall, 0, 0, -1};
   if (spectrum_.validLow() > low_um() || spectrum_.validHigh() < high_um())
     throw UserError(where,
                     print("a responsivity with data from %.6g to %.6g um that reaches from %.6g to %.6g um", spectrum_.validLow(), spectrum_.validHigh(),
@@ -125,17 +127,17 @@ Responsivity::Responsivity(Spectrum spectrum) : spectrum_(std::move(spectrum)) {
 
 std::vector<double> bandRadiance(std::span<const double> temperature_K, const Responsivity& band, LightUnit unit) {
   requireNotNegative({"band_radiance()", "temperature_K"}, temperature_K);
-  return bodiesAt(bandNode(band, unit), temperature_K, Wanted::Value);
+  return bodiesAt(bandNode(band, unit), temperature_K, OfBodies::Value);
 }
 
 std::vector<double> bandRadianceSlope(std::span<const double> temperature_K, const Responsivity& band, LightUnit unit) {
   requireNotNegative({"band_radiance_slope()", "temperature_K"}, temperature_K);
-  return bodiesAt(bandNode(band, unit), temperature_K, Wanted::Slope);
+  return bodiesAt(bandNode(band, unit), temperature_K, OfBodies::Slope);
 }
 
 std::vector<double> apparentTemperature(std::span<const double> radiance, const Responsivity& band, LightUnit unit) {
   requireNotNegative({"apparent_temperature()", "radiance"}, radiance);
-  const BandTemperature table(kernelOf(band, unit), band.low_um(), band.high_um());
+  const BandTemperature table(responsivityKernel(band, unit), band.low_um(), band.high_um());
   const NodePlanck planck(bandNode(band, unit));
   std::vector<double> all;
   all.reserve(radiance.size());
@@ -151,16 +153,16 @@ std::vector<double> apparentTemperature(std::span<const double> radiance, const 
 }
 
 double bandIntegral(std::span<const double> wavelength_um, std::span<const double> values) {
-  const Spectrum table = checkedTable("band_integral()", wavelength_um, values);
+  const Spectrum table = requireArrayTable("band_integral()", wavelength_um, values);
   return table.integral(table.validLow(), table.validHigh());
 }
 
 double bandIntegral(std::span<const double> wavelength_um, std::span<const double> values, const Responsivity& band) {
-  return integralWith("band_integral()", wavelength_um, values, band);
+  return integralOverBand("band_integral()", wavelength_um, values, band);
 }
 
 double bandMean(std::span<const double> wavelength_um, std::span<const double> values, const Responsivity& band) {
-  return integralWith("band_mean()", wavelength_um, values, band) / band.integral_um();
+  return integralOverBand("band_mean()", wavelength_um, values, band) / band.integral_um();
 }
 
 }  // namespace pitviper

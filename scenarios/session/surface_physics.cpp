@@ -15,9 +15,9 @@ namespace {
 /// Angles and lengths that are worked out elsewhere are rounded.
 constexpr double kRoundedAngle = 1e-9;
 
-constexpr const char* kMaterial = "material()";
+constexpr const char* kMaterialCall = "material()";
 
-std::vector<std::string> namesIn(const std::filesystem::path& folder) {
+std::vector<std::string> libraryNamesIn(const std::filesystem::path& folder) {
   std::vector<std::string> names;
   std::error_code ignored;
   for (const auto& entry : std::filesystem::directory_iterator(folder, ignored))
@@ -26,7 +26,7 @@ std::vector<std::string> namesIn(const std::filesystem::path& folder) {
 }
 
 /// Of length 1, above the horizon.
-glm::dvec3 checkedDirection(const glm::dvec3& direction, const std::string& name) {
+glm::dvec3 requireSurfaceDirection(const glm::dvec3& direction, const std::string& name) {
   const double length = glm::length(direction);
   if (!(std::abs(length - 1.0) < 1e-6 && direction.z > 0.0))
     throw UserError({"brdf()", 0, 0, -1}, print("%s is [%g, %g, %g]", name.c_str(), direction.x, direction.y, direction.z),
@@ -42,7 +42,7 @@ std::shared_ptr<const Material> materialOf(const Simulation& simulation, const s
     if (m->name == name) return m;
     names.push_back(m->name);
   }
-  throw unknownWord({simulation.file.empty() ? kMaterial : simulation.file, 0, 0, -1}, "there is no material", name, names);
+  throw unknownWord({simulation.file.empty() ? kMaterialCall : simulation.file, 0, 0, -1}, "there is no material", name, names);
 }
 
 std::shared_ptr<const Material> materialOf(const std::string& name, const Libraries& libraries) {
@@ -55,11 +55,11 @@ std::shared_ptr<const Material> materialOf(const std::string& name, const Librar
     if (std::filesystem::is_regular_file(substances / (name + ".yaml"), ignored))
       return readMaterialText("components:\n  - {reflection: microfacet, index: " + name + ", roughness: 0.05}\n", ".", libraries);
   }
-  std::vector<std::string> names = namesIn(folder);
-  const std::vector<std::string> further = namesIn(substances);
+  std::vector<std::string> names = libraryNamesIn(folder);
+  const std::vector<std::string> further = libraryNamesIn(substances);
   names.insert(names.end(), further.begin(), further.end());
   std::sort(names.begin(), names.end());
-  throw unknownWord({kMaterial, 0, 0, -1}, "there is no material, substance or file", name, names, "'pitviper material' lists them");
+  throw unknownWord({kMaterialCall, 0, 0, -1}, "there is no material, substance or file", name, names, "'pitviper material' lists them");
 }
 
 glm::dvec3 directionAt(double angle_rad, double azimuth_rad) {
@@ -67,7 +67,7 @@ glm::dvec3 directionAt(double angle_rad, double azimuth_rad) {
 }
 
 SurfacePhysics::SurfacePhysics(std::shared_ptr<const Material> material, std::optional<double> state) : material_(std::move(material)) {
-  const Location where{kMaterial, 0, 0, -1};
+  const Location where{kMaterialCall, 0, 0, -1};
   const std::string name = "material '" + material_->name.substr(0, 60) + "'";
   if (material_->medium) throw UserError(where, name + " is a medium", "a surface", "ask for the material of a body's surface");
   if (!state) {
@@ -102,11 +102,11 @@ void SurfacePhysics::requireData(const char* function, std::span<const double> w
 
 std::vector<double> SurfacePhysics::brdf(std::span<const double> wavelength_um, const glm::dvec3& light, std::span<const glm::dvec3> views) const {
   requireData("brdf()", wavelength_um);
-  const glm::dvec3 from = checkedDirection(light, "light");
+  const glm::dvec3 from = requireSurfaceDirection(light, "light");
   std::vector<double> all;
   all.reserve(views.size() * wavelength_um.size());
   for (std::size_t v = 0; v < views.size(); ++v) {
-    const glm::dvec3 to = checkedDirection(views[v], print("views[%zu]", v));
+    const glm::dvec3 to = requireSurfaceDirection(views[v], print("views[%zu]", v));
     for (const double um : wavelength_um) {
       double sum = 0.0;
       for (const auto& [m, share] : mix_)

@@ -39,7 +39,8 @@ struct SolveTry {
 
 struct Solution {
   double x = 0.0;
-  double low95 = 0.0, high95 = 0.0;  ///< holds the crossing in 95 % of all cases; of a measure without noise the places that it lies between
+  double low95 = 0.0,
+         high95 = 0.0;  ///< holds the crossing in 95 % of all cases, cut off at the range's ends; of a measure without noise the places that it lies between
   bool isNoisy = false;
   int evaluations = 0;
   std::vector<SolveTry> tried;  ///< in their order
