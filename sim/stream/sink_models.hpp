@@ -34,5 +34,7 @@ SinkModel videoSink();
 SinkModel truthSink();
 SinkModel sharedMemorySink();
 SinkModel gigeSink();
+SinkModel cocoSink();
+SinkModel yoloSink();
 
 }  // namespace pitviper
