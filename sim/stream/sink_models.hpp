@@ -36,5 +36,6 @@ SinkModel sharedMemorySink();
 SinkModel gigeSink();
 SinkModel cocoSink();
 SinkModel yoloSink();
+SinkModel hdf5Sink();
 
 }  // namespace pitviper
