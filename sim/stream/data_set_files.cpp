@@ -32,6 +32,13 @@ MayReplace DataSetFiles::mayReplaceBeside(const std::filesystem::path& name) con
   };
 }
 
+void DataSetFiles::refuseForeignBeside(const std::filesystem::path& name, const std::filesystem::path& owner) const {
+  std::error_code failure;
+  const auto file = place_.folder / name;
+  if (const MayReplace mayReplace = mayReplaceBeside(owner); mayReplace && std::filesystem::exists(std::filesystem::symlink_status(file, failure)))
+    mayReplace(file);
+}
+
 void DataSetFiles::writeText(const std::filesystem::path& name, const std::string& text, const Json& about) {
   writeFileAtomically(place_.folder / name, text, place_.mayReplace);
   note(name, about);

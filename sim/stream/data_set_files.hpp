@@ -35,6 +35,8 @@ class DataSetFiles {
   void note(const std::filesystem::path& name, const Json& about = {});
   /// For a file that cannot say whose it is, beside one that does: it may be replaced where that one may.
   MayReplace mayReplaceBeside(const std::filesystem::path& name) const;
+  /// Where such a file exists: throws what is to be said where it must stay.
+  void refuseForeignBeside(const std::filesystem::path& name, const std::filesystem::path& owner) const;
   /// The same as writeText, of such a file.
   void writeTextBeside(const std::filesystem::path& name, const std::string& text, const std::filesystem::path& owner, const Json& about = {});
   /// Whole numbers as a TIFF of one page.

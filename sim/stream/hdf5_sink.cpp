@@ -192,7 +192,11 @@ class Hdf5Sink final : public Sink {
   CameraFile& open(const Frame& frame) {
     const std::string name = frame.camera + (frame.kind.empty() ? "" : "_" + frame.kind) + ".h5";
     auto& [camera, file] = cameraFiles_[name];
-    if (!file) camera = frame.camera, file = std::make_unique<CameraFile>(open_, files_.place().folder / name, frame, compression_);
+    if (!file) {
+      files_.refuseForeignBeside(name, kManifest);  // now, not when the run has ended
+      camera = frame.camera;
+      file = std::make_unique<CameraFile>(open_, files_.place().folder / name, frame, compression_);
+    }
     return *file;
   }
 

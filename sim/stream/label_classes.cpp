@@ -3,11 +3,28 @@
 #include <algorithm>
 
 namespace pitviper {
+namespace {
+
+bool isNamedBy(const std::string& wish, const std::string& body) {
+  return wish.ends_with('*') ? body.starts_with(std::string_view(wish).substr(0, wish.size() - 1)) : wish == body;
+}
+
+/// Null where there is none.
+const ClassWishes::value_type* wishOf(const ClassWishes& wishes, const std::string& body) {
+  if (const auto own = wishes.find(body); own != wishes.end()) return &*own;
+  const ClassWishes::value_type* best = nullptr;
+  for (const auto& wish : wishes)
+    if (isNamedBy(wish.first, body) && (!best || wish.first.size() > best->first.size())) best = &wish;
+  return best;
+}
+
+}  // namespace
 
 Parameter categoriesParameter() {
-  return map("categories",
-             "body: what it is called, `{jet: aircraft, decoy: null}`; bodies without an entry are classes by their own names. Terrain and what carries the "
-             "cameras are left out unless they have one; null leaves a body out");
+  return map(
+      "categories",
+      "body: what it is called, `{jet: aircraft, guard_*: person, decoy: null}`; `*` at the end stands for any end. Bodies without an entry are classes by "
+      "their own names, but terrain and what carries the cameras are left out; null leaves a body out");
 }
 
 ClassWishes readClasses(const Record& r, const Simulation& sim) {
@@ -18,7 +35,8 @@ ClassWishes readClasses(const Record& r, const Simulation& sim) {
   const Value& map = asMap(r.value("categories"), "categories");
   for (std::size_t k = 0; k < map.entries.size(); ++k) {
     const auto& [body, value] = map.entries[k];
-    if (std::find(bodies.begin(), bodies.end(), body) == bodies.end()) throw unknownWord(map.keyPlaces[k], "there is no entity", body, bodies);
+    if (std::none_of(bodies.begin(), bodies.end(), [&wish = body](const std::string& name) { return isNamedBy(wish, name); }))
+      throw unknownWord(map.keyPlaces[k], "there is no entity", body, bodies);
     std::optional<std::string> name;
     if (value.kind != Value::Kind::Null) {
       name = readText(value, "a category");
@@ -40,7 +58,7 @@ LabelClasses classesOf(const ClassWishes& wishes, const Simulation& sim, const s
     });
     const bool isTerrain = body.mesh && body.mesh->heightField;
     std::optional<std::string> name;
-    if (const auto wish = wishes.find(body.name); wish != wishes.end()) name = wish->second;
+    if (const auto* wish = wishOf(wishes, body.name)) name = wish->second;
     else if (!isTerrain && !carriesAll) name = body.name;
     classes.bodies.push_back(body.name);
     if (!name) {

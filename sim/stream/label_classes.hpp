@@ -10,7 +10,8 @@
 
 namespace pitviper {
 
-/// By a body's name; none: it is left out. Bodies without an entry are classes of their own.
+/// By a body's name, or, with `*` at the end, the beginning of those of several; none: left out. A whole name goes before a beginning, a longer one before a
+/// shorter. Bodies without an entry are classes of their own.
 using ClassWishes = std::map<std::string, std::optional<std::string>>;
 
 struct LabelClasses {

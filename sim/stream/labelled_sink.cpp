@@ -41,6 +41,7 @@ class LabelledSink final : public Sink {
     ensureWritableFolder(files_.place().folder);
     for (const std::string& part : wishes_.split.parts())
       for (const std::string& kind : kinds) ensureWritableFolder(files_.place().folder / format_->folderOf(kind, part));
+    for (const auto& name : format_->besides()) files_.refuseForeignBeside(name, kManifest);  // now, not when the run has ended
   }
 
   void take(const std::shared_ptr<const Frame>& frame) override {

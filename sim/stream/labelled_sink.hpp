@@ -32,6 +32,8 @@ class LabelFormat {
   /// Files of its own of a frame, and of the whole, those that say whose they are.
   virtual std::vector<std::filesystem::path> filesOf(const std::string& stem, const std::string& part) const = 0;
   virtual std::vector<std::filesystem::path> files() const = 0;
+  /// Those of the whole that cannot say whose they are.
+  virtual std::vector<std::filesystem::path> besides() const { return {}; }
   /// Before the frame's picture is written.
   virtual void take(const LabelledFrame& labelled, DataSetFiles& files) = 0;
   /// After the last picture.

@@ -7,6 +7,8 @@
 namespace pitviper {
 namespace {
 
+constexpr const char *kClassesFile = "classes.txt", *kDataFile = "data.yaml";
+
 class YoloFormat final : public LabelFormat {
  public:
   YoloFormat(LabelClasses classes, const DataSplit& split) : classes_(std::move(classes)), parts_(split.parts()) {}
@@ -17,6 +19,7 @@ class YoloFormat final : public LabelFormat {
   std::vector<std::string> kinds() const override { return {"labels"}; }
   std::vector<std::filesystem::path> filesOf(const std::string&, const std::string&) const override { return {}; }  // labels cannot say whose they are
   std::vector<std::filesystem::path> files() const override { return {}; }
+  std::vector<std::filesystem::path> besides() const override { return {kClassesFile, kDataFile}; }
 
   void take(const LabelledFrame& labelled, DataSetFiles& files) override {
     const double width = labelled.frame.width, height = labelled.frame.height;
@@ -41,8 +44,8 @@ class YoloFormat final : public LabelFormat {
       names += classes_.names[c] + "\n";
       yaml += "  " + std::to_string(c) + ": " + DataSetFiles::Json(classes_.names[c]).dump() + "\n";
     }
-    files.writeTextBeside("classes.txt", names, kManifest);
-    files.writeTextBeside("data.yaml", yaml, kManifest);
+    files.writeTextBeside(kClassesFile, names, kManifest);
+    files.writeTextBeside(kDataFile, yaml, kManifest);
   }
 
  private:

@@ -21,6 +21,7 @@
 #include "sim/stream/body_masks.hpp"
 #include "sim/stream/data_split.hpp"
 #include "sim/stream/hdf5/hdf5_module.hpp"
+#include "sim/stream/label_classes.hpp"
 #include "sim/stream/sink_models.hpp"
 #include "tests/support/read_png.hpp"
 #include "tests/support/run_program.hpp"
@@ -502,6 +503,7 @@ TEST(DataSetSinks, SayWhatTheyNeed) {
   isTold("{sink: yolo, cameras: [wid]}", "did you mean 'wide'?");
   isTold("{sink: yolo, layer: mw.radance}", "did you mean 'mw.radiance'?");
   isTold("{sink: yolo, categories: {jett: a}}", "did you mean 'jet'?");
+  isTold("{sink: yolo, categories: {jot*: a}}", "there is no entity");
   isTold("{sink: yolo, categories: {jet: null, tank: null, decoy: null, boat: null}}", "there is no body to label");
   isTold("{sink: yolo, categories: {jet: \"a\\nb\"}}", "no line of text");
   isTold("{sink: yolo, split: {train: 0.7, val: 0.2}}", "sum to 0.9");
@@ -534,6 +536,21 @@ TEST(DataSetSinks, FilesOfOthersStay) {
   EXPECT_THROW(pass(*sinkOf(yaml, sim, place), frames), UserError);
   EXPECT_EQ(readWholeFile(mine.path() / "labels/narrow_00000.txt"), "a user's own");
   EXPECT_FALSE(std::filesystem::exists(mine.path() / "manifest.json"));
+  std::filesystem::remove(mine.path() / "labels/narrow_00000.txt");
+  mine.put("data.yaml", "a user's own");
+  EXPECT_THROW(sinkOf(yaml, sim, place)->start(), UserError) << "before anything is drawn";
+}
+
+TEST(LabelClasses, NamesEndInAnything) {
+  Simulation sim;
+  for (const char* name : {"guard_0", "guard_1", "guard_10", "gate", "guardian"}) sim.entities.emplace_back().name = name;
+  sim.cameras.emplace_back().name = "eye";
+  const LabelClasses classes = classesOf({{"guard_*", "person"}, {"guard_1", "chief"}, {"gu*", std::nullopt}}, sim, {"eye"});
+  EXPECT_EQ(classes.names, std::vector<std::string>({"person", "chief", "gate"}));
+  EXPECT_EQ(classes.ofBody, std::vector<int>({0, 1, 0, 2, -1}));
+  EXPECT_EQ(classes.of(1), 0);
+  EXPECT_EQ(classes.of(0), -1);
+  EXPECT_EQ(classes.of(6), -1);
 }
 
 // What h5py reads, a reader that shares nothing with this program but the library: values bit for bit, shapes, filters, units, attributes.
@@ -628,7 +645,9 @@ print(json.dumps(out))
   }
   // Twice the same bytes, and nothing under another name.
   const TemporaryFolder again;
-  pass(*sinkOf("{sink: hdf5, compression: 6}", sim, {again.path(), {}}), frames);
+  const SinkPlace place{again.path(), [&sim](const std::filesystem::path& file) { refuseForeignFile(file, sim); }};
+  pass(*sinkOf("{sink: hdf5, compression: 1}", sim, place), frames);
+  pass(*sinkOf("{sink: hdf5, compression: 6}", sim, place), frames);
   std::set<std::string> names;
   for (const auto& at : std::filesystem::directory_iterator(again.path())) names.insert(at.path().filename().string());
   EXPECT_EQ(names, std::set<std::string>({"manifest.json", "narrow.h5", "wide.h5"}));
@@ -638,6 +657,8 @@ print(json.dumps(out))
     EXPECT_EQ(entry["sha256"], sha256(bytes));
     EXPECT_EQ(bytes, readWholeFile(folder.path() / "cubes" / entry["file"].get<std::string>()));
   }
+  std::filesystem::remove(again.path() / "manifest.json");
+  EXPECT_THROW(pass(*sinkOf("hdf5", sim, place), frames), UserError) << "whose these are nobody can say";
 }
 
 // A run that ends early leaves no file that looks whole.
