@@ -221,8 +221,8 @@ LabelWishes readLabelWishes(const Record& r, const Simulation& sim, const std::v
     for (const std::string& word : truth)
       if (takes(c) && !hasTruth(c, word)) missing.push_back(word);
     if (!missing.empty())
-      throw UserError(c.where, "camera '" + c.name + "' has no truth for the sink '" + r.text("sink") + "': " + listed(missing), "all of " + listed(truth),
-                      "add 'truth: [" + listed(truth) + "]' to the camera, or leave it out of the sink's 'cameras'");
+      throw UserError(c.where, "camera '" + c.name + "' has no truth for the sink '" + r.text("sink") + "': " + listed(missing),
+                      listed(truth) + " in its 'truth'", "add 'truth: [" + listed(truth) + "]' to the camera, or leave it out of the sink's 'cameras'");
   }
   w.layer = readPictureLayer(r, sim, w.cameras);
   w.depth_bits = r.text("depth") == "16" ? 16 : 8;
