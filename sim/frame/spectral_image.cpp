@@ -11,7 +11,14 @@ namespace {
 
 constexpr const char* kUnit = "W/(m2 sr um)";
 
-std::string numberOfBin(int bin) { return print("%03d", bin); }
+/// A layer's name, S0.3050nm: the first of the Stokes parameters, at a wavelength with a comma for the decimal point.
+/// Source: Fichet, Pacanowski and Wilkie 2021, "An OpenEXR Layout for Spectral Images", JCGT 10(3).
+constexpr const char *kStokes = "S0", *kLayoutVersion = "1.0", *kLayoutUnit = "W.m^-2.sr^-1.um^-1";
+std::string nanometres(double um) {
+  std::string text = print("%.12g", 1e3 * um);
+  std::replace(text.begin(), text.end(), '.', ',');
+  return text + "nm";
+}
 
 std::string micrometres(double low, double high) { return print("%.6g to %.6g um", low, high); }
 
@@ -121,17 +128,19 @@ class Reader {
 
 ChannelOutput binOutput(const SpectralBins& bins, int bin) {
   ChannelOutput o;
-  o.channel = "spectrum";
-  o.quantity = numberOfBin(bin);
   o.unit = kUnit;
   o.where = bins.where;
   o.bandLow_um = bins.edge_um[static_cast<size_t>(bin)];
   o.bandHigh_um = bins.edge_um[static_cast<size_t>(bin) + 1];
+  o.channel = kStokes;
+  o.quantity = nanometres(0.5 * (o.bandLow_um + o.bandHigh_um));
   o.kernel = Spectrum::band(o.bandLow_um, o.bandHigh_um, 1.0 / (o.bandHigh_um - o.bandLow_um));
   return o;
 }
 
 void addBins(Frame& frame, const SpectralBins& bins) {
+  frame.attributes.push_back({"spectralLayoutVersion", std::string(kLayoutVersion)});
+  frame.attributes.push_back({"emissiveUnits", std::string(kLayoutUnit)});
   for (int b = 0; b < bins.count(); ++b) {
     const ChannelOutput o = binOutput(bins, b);
     frame.attributes.push_back({"wavelength_um." + o.layer(), 0.5 * (o.bandLow_um + o.bandHigh_um)});

@@ -21,10 +21,10 @@ struct SpectralImage {
   std::vector<Attribute> attributes;  ///< of the picture as a whole: where, when, of what
 };
 
-/// The output whose integral is a bin's mean: a box of height 1/width. Layers are named "spectrum.000" in order of wavelength.
+/// The output whose integral is a bin's mean: a box of height 1/width. Layers are named "S0.3050nm" after its middle.
 ChannelOutput binOutput(const SpectralBins& bins, int bin);
 
-/// Of every bin: wavelength_um (centre) and bin_um (edges, exact) as attributes.
+/// Of every bin: wavelength_um (centre) and bin_um (edges, exact) as attributes; and those of the layout for spectral images that layers are named after.
 void addBins(Frame& frame, const SpectralBins& bins);
 
 /// Errors: UserError with the file name if it cannot be read, has no bins, bins that overlap or leave gaps, or lacks the camera's attributes.

@@ -16,7 +16,8 @@ std::filesystem::path readFolder(const Record& r) {
 }
 
 Registry<SinkModel>& sinkModels() {
-  static Registry<SinkModel> all("sink", {filesSink(), previewsSink(), sheetSink(), videoSink(), truthSink(), sharedMemorySink(), gigeSink()});
+  static Registry<SinkModel> all(
+      "sink", {filesSink(), previewsSink(), sheetSink(), videoSink(), truthSink(), sharedMemorySink(), gigeSink(), cocoSink(), yoloSink(), hdf5Sink()});
   return all;
 }
 

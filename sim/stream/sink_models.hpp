@@ -34,5 +34,8 @@ SinkModel videoSink();
 SinkModel truthSink();
 SinkModel sharedMemorySink();
 SinkModel gigeSink();
+SinkModel cocoSink();
+SinkModel yoloSink();
+SinkModel hdf5Sink();
 
 }  // namespace pitviper

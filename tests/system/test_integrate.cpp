@@ -86,7 +86,9 @@ TEST_F(Integrate, RendersOnceAndAppliesASensorLater) {
     EXPECT_NEAR(std::get<double>(image.findAttribute("wavelength_um." + name)->value), 3.05 + 0.1 * static_cast<double>(k), 1e-12);
     EXPECT_EQ(std::get<std::string>(image.findAttribute("unit." + name)->value), "W/(m2 sr um)");
   }
-  EXPECT_EQ(image.layers[7].name, "spectrum.007");
+  EXPECT_EQ(image.layers[7].name, "S0.3750nm");
+  EXPECT_EQ(std::get<std::string>(image.findAttribute("spectralLayoutVersion")->value), "1.0");
+  EXPECT_EQ(std::get<std::string>(image.findAttribute("emissiveUnits")->value), "W.m^-2.sr^-1.um^-1");
   for (const char* name : {"pitviper.pose_ecef_m", "pitviper.scenario_sha256", "pitviper.aperture_m", "entity.1.name"})
     EXPECT_NE(image.findAttribute(name), nullptr) << name;
 
@@ -100,7 +102,7 @@ TEST_F(Integrate, RendersOnceAndAppliesASensorLater) {
   for (const char* name : {"binning_error.mw.radiance", "unit.mw.radiance", "band_um.mw.radiance", "pitviper.sensor", "pitviper.sensor_sha256",
                            "pitviper.spectral_image", "pitviper.pose_ecef_m", "pitviper.scenario_sha256", "entity.1.name"})
     EXPECT_NE(frame.findAttribute(name), nullptr) << name;
-  EXPECT_EQ(frame.findAttribute("bin_um.spectrum.000"), nullptr);
+  EXPECT_EQ(frame.findAttribute("bin_um.S0.3050nm"), nullptr);
   ASSERT_EQ(pitviper(std::string("integrate ") + kImage + " sensor.yaml --out again/other.exr").code, 0);
   EXPECT_EQ(readAll(folder_ / "again/other.exr"), readAll(folder_ / "frames/c_00000_spectral_sensor.exr")) << "the same bytes twice";
   EXPECT_EQ(pitviper(std::string("info ") + kImage).code, 0);
@@ -142,25 +144,25 @@ TEST_F(Integrate, RefusesImagesThatAreNotSpectral) {
   write("bad.exr", bytes.substr(0, 300));
   refused(line, "bad.exr: ", {});
   damaged([](ExrImage& image) { image.layers.erase(image.layers.begin() + 7); });
-  refused(line, "bad.exr: ", {"leave a gap", "'spectrum.006'", "'spectrum.008'", "3.6 to 3.7 um"});
+  refused(line, "bad.exr: ", {"leave a gap", "'S0.3650nm'", "'S0.3850nm'", "3.6 to 3.7 um"});
   auto attribute = [](const char* name, auto value) {
     return [=](ExrImage& image) {
       for (auto& a : image.attributes)
         if (a.name == name) a.value = value;
     };
   };
-  damaged(attribute("bin_um.spectrum.003", std::string("3.3 3.45")));
-  refused(line, "bad.exr: ", {"overlap", "'spectrum.003'", "'spectrum.004'"});
+  damaged(attribute("bin_um.S0.3350nm", std::string("3.3 3.45")));
+  refused(line, "bad.exr: ", {"overlap", "'S0.3350nm'", "'S0.3450nm'"});
   for (const char* broken : {"3.3 oops", "3.3", "nan nan", "5 3", "-1 3.4", ""}) {
-    damaged(attribute("bin_um.spectrum.003", std::string(broken)));
-    refused(line, "bad.exr: ", {"'bin_um.spectrum.003' is not a bin"});
+    damaged(attribute("bin_um.S0.3350nm", std::string(broken)));
+    refused(line, "bad.exr: ", {"'bin_um.S0.3350nm' is not a bin"});
   }
   for (const float broken : {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
     damaged([broken](ExrImage& image) { image.layers.at(2).pixels.at(static_cast<size_t>(image.width) + 1) = broken; });
     refused(line, "bad.exr: ", {"is not finite at column 1, row 1"});
   }
-  damaged(attribute("unit.spectrum.003", std::string("W/(m2 sr)")));
-  refused(line, "bad.exr: ", {"'spectrum.003' is not spectral radiance"});
+  damaged(attribute("unit.S0.3350nm", std::string("W/(m2 sr)")));
+  refused(line, "bad.exr: ", {"'S0.3350nm' is not spectral radiance"});
   damaged(attribute("pitviper.focal_length_m", 0.0));
   refused(line, "bad.exr: ", {"'pitviper.focal_length_m' is not a number above zero"});
   damaged(attribute("pitviper.pitch_x_m", 1e9));
