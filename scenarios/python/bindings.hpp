@@ -6,6 +6,7 @@ namespace pitviper {
 
 void bindErrors(pybind11::module_& module);
 void bindFrames(pybind11::module_& module);
+void bindPhysics(pybind11::module_& module);
 void bindScenes(pybind11::module_& module);
 
 }  // namespace pitviper

@@ -31,4 +31,5 @@ PYBIND11_MODULE(_pitviper, m) {
   pitviper::bindErrors(m);
   pitviper::bindFrames(m);
   pitviper::bindScenes(m);
+  pitviper::bindPhysics(m);
 }

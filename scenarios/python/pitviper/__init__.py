@@ -38,6 +38,37 @@ _extension = _load_extension()
 
 from ._pitviper_names import InputError, __version__  # noqa: E402
 from .frame import Frame, frames_in, read_frame  # noqa: E402
+from .physics import (  # noqa: E402
+    Surface,
+    apparent_temperature,
+    band_integral,
+    band_mean,
+    band_radiance,
+    band_radiance_slope,
+    chart,
+    direction,
+    material,
+    planck,
+    planck_slope,
+)
 from .scene import Scene  # noqa: E402
 
-__all__ = ["Frame", "InputError", "Scene", "__version__", "frames_in", "read_frame"]
+__all__ = [
+    "Frame",
+    "InputError",
+    "Scene",
+    "Surface",
+    "__version__",
+    "apparent_temperature",
+    "band_integral",
+    "band_mean",
+    "band_radiance",
+    "band_radiance_slope",
+    "chart",
+    "direction",
+    "frames_in",
+    "material",
+    "planck",
+    "planck_slope",
+    "read_frame",
+]

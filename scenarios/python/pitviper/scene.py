@@ -6,12 +6,14 @@ import json
 import numbers
 import os
 import pathlib
-from typing import Any, Callable, Iterable, Mapping
+from typing import Any, Callable, Iterable, Mapping, Sequence
 
 import _pitviper
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .frame import Frame
+from .physics import Surface
 
 
 def _plain(value: Any) -> Any:
@@ -220,6 +222,29 @@ class Scene:
     ) -> dict[str, Any]:
         """A pixel's spectral radiance by the reference: wavelength_um (bins,), edge_um (bins + 1,), all (bins,) [W/(m2 sr um)], terms {part: (bins,)}, rest."""
         return self._held.spectrum(camera, self.now if time is None else float(time), column, row, low_um, high_um, bins)
+
+    # Its air and materials
+
+    def path(self, start: Sequence[float], end: Sequence[float], wavelength_um: ArrayLike) -> dict[str, Any]:
+        """The air between two places (east, north, up [m]), looking from the first: range_m, optical_depth, transmittance, path_radiance [W/(m2 sr um)], each
+        of the wavelengths' shape, by the reference: what the air emits and scatters. A value is a mean over the width of the air's own data: 20 1/cm of library
+        air, whose bands do not multiply along a path: sum over wavelengths (band_transmittance). Errors: InputError where the earth stands between."""
+        return _pitviper.air_path(self._held, tuple(start), tuple(end), wavelength_um)
+
+    def sky(self, place: Sequence[float], direction: Sequence[float], wavelength_um: ArrayLike) -> np.ndarray:
+        """Radiance of the sky in a direction, without the sun's disc [W/(m2 sr um)], of the wavelengths' shape."""
+        return _pitviper.sky_radiance(self._held, tuple(place), tuple(direction), wavelength_um)
+
+    def band_transmittance(self, start: Sequence[float], end: Sequence[float], band: tuple, source_K: float) -> float:
+        """Share of a black body's light that a band gets through the air between two places."""
+        return _pitviper.band_transmittance(self._held, tuple(start), tuple(end), band, source_K)
+
+    def material(self, name: str, state: float | None = None) -> Surface:
+        """One of its materials, as pitviper.material() has those of the library."""
+        return Surface(_pitviper.surface_of(self._held, name, state))
+
+    def _repr_png_(self) -> bytes:
+        return self.render(draft=True)._repr_png_()
 
     def __repr__(self) -> str:
         cameras = "" if self.closed else ", cameras " + ", ".join(c["name"] for c in self.cameras)
