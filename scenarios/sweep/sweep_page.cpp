@@ -118,9 +118,9 @@ void drawMeasure(HtmlPage& page, const SweepIdentity& sweep, const std::vector<S
   if (m.sobol) drawBars({drawing, kSweepPanelWidth, 0.0, upper}, "first-order index", "total", indices, 0.0);
   drawBars({drawing, static_cast<double>(before - 1) * kSweepPanelWidth, 0.0, upper}, "rank correlation", "", correlations, -1.0);
   for (std::size_t i = 0; i < factors.size(); ++i) {
-    const double across = static_cast<double>((before + i) % kPanelsAcross), line = static_cast<double>((before + i) / kPanelsAcross);
-    const double top = line > 0.0 ? upper + (line - 1.0) * kSweepPanelHeight : 0.0;
-    drawScatter({drawing, across * kSweepPanelWidth, top}, sweep.factors[i], measure, factors[i], values, mostDots);
+    const std::size_t across = (before + i) % kPanelsAcross, line = (before + i) / kPanelsAcross;
+    const double top = line > 0 ? upper + static_cast<double>(line - 1) * kSweepPanelHeight : 0.0;
+    drawScatter({drawing, static_cast<double>(across) * kSweepPanelWidth, top}, sweep.factors[i], measure, factors[i], values, mostDots);
   }
   page.drawing(drawing.svg(m.name + " against each factor"),
                "Red: the median, and 5 and 95 %. Thin lines over bars: 95 % intervals." +

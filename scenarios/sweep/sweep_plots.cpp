@@ -85,7 +85,7 @@ void drawHistogram(const SweepPanel& panel, const MeasureColumn& measure, const 
   }
   SweepAxis numbers = plainAxis(0.0, 1.08 * *std::max_element(counts.begin(), counts.end()));
   std::erase_if(numbers.ticks, [](const SweepAxis::Tick& t) {
-    return t.label.find('.') != t.label.npos && t.label.find_first_not_of("0", t.label.find('.') + 1) != t.label.npos;
+    return t.label.find('.') != t.label.npos && t.label.find_first_not_of('0', t.label.find('.') + 1) != t.label.npos;
   });
   frame.up(numbers, "samples");
   frame.across(axis, titled(measure.name, measure.unit));
