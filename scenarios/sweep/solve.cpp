@@ -17,9 +17,8 @@ constexpr int kSolveFewestRepeats = 4, kSolveMostRepeats = 100000;
 constexpr double kSolveDoubt = 0.05;
 /// Of finding three means off a line that lie on one.
 constexpr double kSolveBentDoubt = 0.01;
-/// The last three places are moved where the crossing lies so many of their steps from the middle; so often at most.
-constexpr double kSolveFarSteps = 1.5;
-constexpr int kSolveMostMoves = 3;
+/// The last three places are moved where the crossing lies beyond them, and set further apart where they do not tell the slope: so often at most.
+constexpr int kSolveMostMoves = 4;
 /// Draws at each of the last two places of a measure that seems to have no noise and few values: of one that is either as often, 1 in 1000 is missed.
 constexpr int kSolveCommonDraws = 6;
 
@@ -93,6 +92,7 @@ class SolveSearch {
       throw UserError(wish_.where, print("%s is %g at %s = %g", wish_.measure.c_str(), value, wish_.factor.c_str(), x), "a number all over the range",
                       "choose a range in which all pictures have this measure");
     place.values.push_back(value);
+    least_ = std::min(least_, value), most_ = std::max(most_, value);
   }
 
   void keep(const SolvePlace& place) { result_.tried.push_back({xAt(place.at), place.mean(), place.standardError(), place.count()}); }
@@ -103,16 +103,19 @@ class SolveSearch {
   SolveSide told(SolvePlace& place) {
     for (int wanted = kSolveFewestRepeats;; wanted = std::min(2 * wanted, wish_.repeats)) {
       while (place.count() < wanted) draw(place);
-      const int own = place.count() - 1;
-      // Draws that are alike by chance have the noise of the others.
-      const bool alike = !(place.variance() > 0.0) && degrees_ > 0;
-      const double variance = alike ? squares_ / degrees_ : place.variance(), away = std::abs(place.mean() - wish_.target);
-      const bool known = away > studentQuantile(sure_, alike ? degrees_ : own) * std::sqrt(variance / place.count());
-      if (!known && wanted < wish_.repeats) continue;
-      squares_ += place.squares(), degrees_ += own;
+      const bool isAlike = !(place.variance() > 0.0),
+                 isKnown =
+                     isAlike ? toldByAlike(place) : std::abs(place.mean() - wish_.target) > studentQuantile(sure_, place.count() - 1) * place.standardError();
+      if (!isKnown && wanted < wish_.repeats) continue;
       keep(place);
-      return known ? sideOf(place.mean()) : SolveSide::Unknown;
+      return isKnown || isAlike ? sideOf(place.mean()) : SolveSide::Unknown;
     }
+  }
+
+  /// Draws that are all alike may have missed others: so large a share of them, as large as any was so far, leaves the mean on this side.
+  bool toldByAlike(const SolvePlace& place) const {
+    const double value = place.values.front(), other = value > wish_.target ? least_ : most_, missed = 1.0 - std::pow(1.0 - sure_, 1.0 / place.count());
+    return (value + missed * (other - value) - wish_.target) * (value - wish_.target) > 0.0;
   }
 
   std::string described(const SolvePlace& place) const {
@@ -177,13 +180,14 @@ class SolveSearch {
     told(low), told(high);
     const SolveSide first = sideOfLow(low, high);
     bool near = false;
+    double noise = 0.0;
     while (!near && high.at - low.at > wish_.tolerance) {
       SolvePlace middle{0.5 * (low.at + high.at), {}};
       const SolveSide side = told(middle);
-      if (side == SolveSide::Unknown) near = closeIn(low, high, middle.at, first);
+      if (side == SolveSide::Unknown) noise = middle.variance(), near = closeIn(low, high, middle.at, first);
       else (side == first ? low : high) = middle;
     }
-    fit(low, high);
+    fit(low, high, std::max(noise, 0.5 * (low.variance() + high.variance())));
   }
 
   /// About a place whose side is not told. False: it lies on one side after all, and bisecting goes on.
@@ -206,62 +210,62 @@ class SolveSearch {
     return true;
   }
 
-  /// What three places say of the crossing, in steps from their middle.
+  /// What three places say of the crossing, in steps from the middle one.
   struct Crossing {
     double at = 0.0;
     std::optional<std::array<double, 2>> interval;  ///< none: the slope is not sure
-    bool isBent = false;
+    bool isBent = false;                            ///< so that a line through them is off by more than noise
   };
 
-  static double degreesOf(const std::array<double, 3>& weights, const std::array<double, 3>& ofMeans, int count) {
-    double sum = 0.0, squares = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const double part = weights[k] * weights[k] * ofMeans[k];
-      sum += part, squares += part * part;
-    }
-    return sum * sum / squares * (count - 1);
-  }
-
+  /// A line through the middle place with the slope between the other two: of a measure that bends evenly it is off by the bend times the square of the steps
+  /// to the crossing, which are few.
   Crossing crossingOf(const std::array<SolvePlace, 3>& places, double rising) const {
     std::array<double, 3> mean{}, variance{};
     for (std::size_t k = 0; k < 3; ++k) mean[k] = places[k].mean(), variance[k] = places[k].variance() / places[k].count();
-    const double middle = (mean[0] + mean[1] + mean[2]) / 3.0 - wish_.target, slope = 0.5 * (mean[2] - mean[0]);
-    const int count = places[0].count();
+    // Deviation of a sum of the means with these weights at a share of certainty.
+    const auto sure = [&](const std::array<double, 3>& weights, double doubt) {
+      double sum = 0.0, squares = 0.0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double part = weights[k] * weights[k] * variance[k];
+        sum += part, squares += part * part / (places[k].count() - 1);
+      }
+      return sum > 0.0 ? studentQuantile(1.0 - 0.5 * doubt, sum * sum / squares) * std::sqrt(sum) : 0.0;
+    };
+    const double off = mean[1] - wish_.target, slope = 0.5 * (mean[2] - mean[0]), bend = 0.5 * (mean[0] + mean[2]) - mean[1];
     Crossing crossing;
     if (!(slope * rising > 0.0)) return crossing;
-    crossing.at = -middle / slope;
-    const double bend = 0.5 * (mean[0] + mean[2]) - mean[1], ofBend = 0.25 * (variance[0] + variance[2]) + variance[1];
-    const double u = crossing.at, ofMiddle = (variance[0] + variance[1] + variance[2]) / 9.0, ofSlope = 0.25 * (variance[0] + variance[2]),
-                 ofBoth = (variance[2] - variance[0]) / 6.0;
-    if (!(ofBend > 0.0)) {
-      crossing.isBent = true;  // no noise to tell by
-      return crossing;
-    }
-    crossing.isBent = std::abs(bend) > studentQuantile(1.0 - 0.5 * kSolveBentDoubt, degreesOf({0.5, -1.0, 0.5}, variance, count)) * std::sqrt(ofBend);
-    const double t = studentQuantile(1.0 - 0.5 * kSolveDoubt, degreesOf({1.0 / 3.0 - 0.5 * u, 1.0 / 3.0, 1.0 / 3.0 + 0.5 * u}, variance, count));
-    // (middle + slope u)^2 <= t^2 of its variance.
-    const double a = slope * slope - t * t * ofSlope, b = middle * slope - t * t * ofBoth, c = middle * middle - t * t * ofMiddle;
+    const double u = crossing.at = -off / slope, error = sure({-0.5 * u, 1.0, 0.5 * u}, kSolveDoubt);
+    crossing.isBent = std::abs(bend) > sure({0.5, -1.0, 0.5}, kSolveBentDoubt) && std::abs(bend) * u * u > 0.5 * error;
+    // (off + slope u)^2 <= t^2 of its variance.
+    const double ofSlope = 0.25 * (variance[0] + variance[2]), all = variance[1] + u * u * ofSlope, t2 = all > 0.0 ? error * error / all : 0.0,
+                 a = slope * slope - t2 * ofSlope, b = off * slope, c = off * off - t2 * variance[1];
     if (!(a > 0.0)) return crossing;
     const double root = std::sqrt(std::max(b * b - a * c, 0.0));
     crossing.interval = {(-b - root) / a, (-b + root) / a};
     return crossing;
   }
 
-  void fit(const SolvePlace& low, const SolvePlace& high) {
-    const double rising = high.mean() - low.mean(), slope = rising / (high.at - low.at), noise = std::sqrt(0.5 * (low.variance() + high.variance()));
-    const double step = std::min(std::max(0.5 * (high.at - low.at), noise / std::abs(slope)), 0.5);
-    double centre = between(low, high);
+  /// `noise`: variance of draws about where the crossing lies.
+  void fit(const SolvePlace& low, const SolvePlace& high, double noise) {
+    const double rising = high.mean() - low.mean(), slope = rising / (high.at - low.at);
+    const int aside = std::max(wish_.repeats / 2, kSolveFewestRepeats), within = 2 * wish_.repeats;
+    // The slope is then sure to a sixth.
+    double step = std::clamp(6.0 * std::sqrt(0.5 * noise / aside) / std::abs(slope), 0.5 * wish_.tolerance, 0.5), centre = between(low, high);
     for (int move = 0;; ++move) {
       centre = std::clamp(centre, step, 1.0 - step);
       std::array<SolvePlace, 3> places;
       for (std::size_t k = 0; k < 3; ++k) {
         places[k].at = centre + step * (static_cast<double>(k) - 1.0);
-        while (places[k].count() < wish_.repeats) draw(places[k]);
+        while (places[k].count() < (k == 1 ? within : aside)) draw(places[k]);
         keep(places[k]);
       }
       const Crossing crossing = crossingOf(places, rising);
-      if (std::abs(crossing.at) > kSolveFarSteps && move < kSolveMostMoves) {
+      if (move < kSolveMostMoves && std::abs(crossing.at) > 1.0) {
         centre += step * crossing.at;
+        continue;
+      }
+      if (move < kSolveMostMoves && !crossing.interval) {
+        step = std::min(2.0 * step, 0.5);
         continue;
       }
       double from = places[0].at, to = places[2].at;
@@ -279,8 +283,8 @@ class SolveSearch {
   const SeededMeasure& measure_;
   const SolveWish& wish_;
   std::mt19937_64 seeds_;
-  double sure_;                           ///< quantile at which a side is told
-  double squares_ = 0.0, degrees_ = 0.0;  ///< of all draws about the means of their places
+  double sure_;                                 ///< quantile at which a side is told
+  double least_ = INFINITY, most_ = -INFINITY;  ///< of all draws
   Solution result_;
 };
 

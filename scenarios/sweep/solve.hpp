@@ -3,11 +3,13 @@
 //
 // Law: bisection. The side of a place is that of the mean of its repeats, once Student's t tells it from the target: looked at after 4, 8, 16 ... repeats, each
 //   look with its part of the 5 % (Bonferroni). Where all that are allowed do not tell it, the crossing is near: it is closed in from both sides as far as
-//   sides can be told. Then three places about it have all repeats drawn anew, for those drawn so far ended when they did because of what they were: a line
-//   through the three means meets the target at x, and the interval is Fieller's, noise over slope where the slope is sure.
+//   sides can be told. Then three places about it are drawn anew, for draws so far ended when they did because of what they were: twice the repeats at the
+//   middle one, half of them at the two beside it, which give the slope. Where the line meets the target is x, and the interval is Fieller's: noise over slope
+//   where the slope is sure.
 // Source: Student 1908; Fieller 1954, J. R. Stat. Soc. B 16, 175; Welch 1947, Biometrika 34, 28 (degrees of freedom).
-// Valid: a mean that crosses the target once in the range. Where the three means do not lie on a line the interval holds all three places. A measure of few
-//   values (yes or no) is told from its target less surely than 95 % where that is close to one of them.
+// Valid: a mean that crosses the target once in the range. Where the measure bends so much between the three places that the line is off by more than its noise
+//   the interval holds all three. Of a measure of two values (seen or not) with 64 repeats the interval holds the crossing of 1/2 and of 0.8 as it should,
+//   that of 0.95 in 80 % of cases only.
 #include <cstdint>
 #include <functional>
 #include <string>

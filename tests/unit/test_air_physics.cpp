@@ -7,7 +7,9 @@
 #include "atmosphere/homogeneous.hpp"
 #include "scenarios/reader/library_air.hpp"
 #include "scenarios/session/air_physics.hpp"
-#include "sim/radiometry/constants.hpp"
+#include "sim/render/reference/reference_pixel.hpp"
+#include "sim/world/view.hpp"
+#include "sim/world/world.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/print.hpp"
 #include "tests/support/scene_builder.hpp"
@@ -164,6 +166,35 @@ TEST(AirPhysics, TheSkyIsAPathAndWhatLiesBehind) {
   const AirPath path = pathThrough(sim, {0, 0, 50}, glm::dvec3(0, 0, 50) + 3e5 * up, um);
   const Values sky = skyRadiance(sim, {0, 0, 50}, up, um);
   for (std::size_t i = 0; i < um.size(); ++i) EXPECT_NEAR((path.pathRadiance[i] + behind[i] * path.transmittance[i]) / sky[i], 1.0, 1e-4) << um[i];
+}
+
+// What the reference draws of a pixel, in every term and stream: the sky, and a body of 0 K at the end of a path.
+TEST(AirPhysics, IsWhatTheReferenceDraws) {
+  const std::string air =
+      "atmosphere: {library: hazy_us76, visibility: 10 km}\nsun: {azimuth: 70 deg, elevation: 30 deg, irradiance: solar_e490}\n"
+      "background: {temperature: 100 K}\nground: {material: soil, temperature: 290 K}\n";
+  for (const bool sky : {true, false}) {
+    const Simulation sim =
+        scene(air + "entities: [{name: b, shape: {model: sphere, radius: 20 m}, material: blackbody, temperature: 0 K, position: [0 m, 2 km, 600 m]}]\n" +
+              "cameras: [{name: c, film: {width: 1, height: 1}, field_of_view: 0.01 deg, aperture: 1 mm, position: [0 m, 0 m, 100 m], look_at: " +
+              (sky ? "[1 km, 2 km, 600 m]" : "[0 m, 2 km, 600 m]") +
+              ", channels: [{name: a, response: {band: [0.5 um, 0.51 um]}}, {name: b, response: {band: [3.8 um, 3.9 um]}}]}]\n");
+    SpectralSampling fine;
+    fine.reference = true;
+    const Camera& camera = sim.cameras.front();
+    const Plan plan = makePlan(sim, camera.outputs, fine, {});
+    const WorldState state = advance(sim, 0.0);
+    const std::vector<char> drawn(1, 1);
+    const ReferencePixel pixel = ReferenceShader(sim, plan, cameraView(camera, state, 1), state, drawn).pixel(0, 0);
+    Values um;
+    for (const SpectralNode& n : plan.nodes) um.push_back(n.members.front().wavelength_um);
+    ASSERT_GT(um.size(), 10u);
+    const glm::dvec3 from(0, 0, 100), along = glm::normalize(glm::dvec3(sky ? 1e3 : 0.0, 2e3, 500.0));
+    const Values own = sky ? skyRadiance(sim, from, along, um) : pathThrough(sim, from, from + pixel.range_m * along, um).pathRadiance;
+    double worst = 0.0;
+    for (std::size_t i = 0; i < um.size(); ++i) worst = std::max(worst, std::abs(own[i] / pixel.radiance[i] - 1.0));
+    bound(sky ? "sky off the reference's pixel of it" : "path radiance off the reference's pixel of a body of 0 K", worst, 1e-6, "place of the pixel's middle");
+  }
 }
 
 // Bodies, their materials' data and fields are not the air's: a body in the way takes nothing.
