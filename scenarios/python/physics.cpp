@@ -128,7 +128,6 @@ void bindAir(py::module_& m) {
 
 void bindSurfaces(py::module_& m) {
   py::class_<SurfacePhysics>(m, "Surface")
-      .def_property_readonly("name", [](const SurfacePhysics& s) { return s.material().name; })
       .def_property_readonly("valid_um", [](const SurfacePhysics& s) { return std::make_pair(s.low_um(), s.high_um()); })
       .def_property_readonly("states",
                              [](const SurfacePhysics& s) -> py::object {

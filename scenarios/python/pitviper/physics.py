@@ -64,12 +64,9 @@ def direction(angle_rad: float, azimuth_rad: float = 0.0) -> tuple[float, float,
 class Surface:
     """What a material's surface reflects, emits and lets through. Textures count as 1. Angles count from its normal, 0 to pi/2."""
 
-    def __init__(self, held: "_pitviper.Surface"):
+    def __init__(self, held: "_pitviper.Surface", name: str):
         self._held = held
-
-    @property
-    def name(self) -> str:
-        return self._held.name
+        self.name = name
 
     @property
     def valid_um(self) -> tuple[float, float]:
@@ -115,7 +112,7 @@ class Surface:
 def material(name: str, state: float | None = None) -> Surface:
     """A material of the library, a file of one, or a substance by its optical constants, without a scenario. `state`: of one that changes with something: its
     temperature [K], wetness, thickness of its film [um]. Errors: InputError with the names there are."""
-    return Surface(_pitviper.surface(name, state))
+    return Surface(_pitviper.surface(name, state), name)
 
 
 def chart(

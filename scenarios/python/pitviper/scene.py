@@ -241,7 +241,7 @@ class Scene:
 
     def material(self, name: str, state: float | None = None) -> Surface:
         """One of its materials, as pitviper.material() has those of the library."""
-        return Surface(_pitviper.surface_of(self._held, name, state))
+        return Surface(_pitviper.surface_of(self._held, name, state), name)
 
     def _repr_png_(self) -> bytes:
         return self.render(draft=True)._repr_png_()
