@@ -9,6 +9,7 @@
 
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
+#include "scenarios/session/plan_turn.hpp"
 #include "scenarios/session/same_bodies.hpp"
 #include "scenarios/session/same_drawing.hpp"
 #include "sim/camera/sensor_chain.hpp"
@@ -100,7 +101,9 @@ struct OpenScene::Desk {
     takeBodies(sim);
     const Camera& camera = sim->cameras[number];
     const Plan* earlier = before ? before->plan() : nullptr;
-    Plan plan = cameraPlan(*sim, drawnCamera(camera), planning, earlier);
+    const Camera drawn = drawnCamera(camera);
+    const PlanTurn turn(*sim, drawn, [&] { planning(0.0); });
+    Plan plan = cameraPlan(*sim, drawn, planning, earlier);
     auto line = std::make_unique<CameraLine>(*sim, camera, shaderLibrary(),
                                              std::make_unique<CameraDrawing>(*sim, camera, std::move(plan), shaderLibrary(), bodies), false);
     if (earlier && sameAir(*before->sim, *sim) && drawAlike(*earlier, line->renderer().plan())) line->renderer().takeAir(before->line->renderer());

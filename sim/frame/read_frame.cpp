@@ -6,6 +6,7 @@
 #include <new>
 
 #include "sim/frame/frame_notes.hpp"
+#include "sim/frame/target_rows.hpp"
 #include "sim/image/fits.hpp"
 #include "sim/image/png.hpp"
 #include "sim/image/tiff.hpp"
@@ -149,6 +150,7 @@ Frame readFrame(const std::filesystem::path& file) {
     Frame frame = read(file);
     nameLayers(frame);
     takeAttributes(frame);
+    restoreTargets(frame);
     return frame;
   } catch (const std::bad_alloc&) {
     throw UserError({.file = file.string()}, "the frame is too large for this machine's memory", "a smaller frame", "use a machine with more memory");

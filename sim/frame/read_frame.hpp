@@ -9,7 +9,8 @@ namespace pitviper {
 
 /// An EXR, FITS, TIFF or ENVI file, one of raw bytes (raw_file.cpp), a grey PNG or the `.json` of several; an ENVI header or the pixels beside it. Told by
 /// content, ENVI's pixels by their header. Layers have names and units, the frame attributes, number, time and camera where the file says so; metadata of a
-/// TIFF are in the `.json` beside it. Layers without a name are "layer_1", ...; channels come before truth. Not read back: targets, stamp, kind; the curves of
+/// TIFF are in the `.json` beside it. Layers without a name are "layer_1", ...; channels come before truth. Targets are restored as far as attributes tell
+/// them. Not read back: stamp, kind; the curves of
 /// a FITS file's tables. Errors: UserError with the file name for other files, those that are damaged or truncated, layers of different sizes, over 32768 on a
 /// side or over 1024.
 Frame readFrame(const std::filesystem::path& file);

@@ -6,6 +6,11 @@
 #include "sim/parameters/print.hpp"
 
 namespace pitviper {
+namespace {
+
+const std::string kTarget = "target.";
+
+}  // namespace
 
 void finishTargets(Frame& frame, const CountMarks& marks) {
   for (TargetRow& t : frame.targets) {
@@ -20,11 +25,45 @@ void finishTargets(Frame& frame, const CountMarks& marks) {
         for (int x = left; x <= right; ++x)
           c.saturated += own->second[static_cast<std::size_t>(y) * static_cast<std::size_t>(frame.width) + static_cast<std::size_t>(x)] == CountMark::Full;
     }
-    const std::string name = "target." + t.name + ".";
+    const std::string name = kTarget + t.name + ".";
+    frame.attributes.push_back({name + "kind", t.kind});
     frame.attributes.push_back({name + "place", std::vector<double>{t.column, t.row, t.left, t.top, t.right, t.bottom}});
     frame.attributes.push_back({name + "sight", std::vector<double>{t.range_m, t.rangeRate_m_s, t.sightRight_rad_s, t.sightUp_rad_s, t.visible}});
     for (const TargetRow::Channel& c : t.channels)
       frame.attributes.push_back({name + c.channel, std::vector<double>{c.own, c.total, c.contrast, c.signalToNoise, static_cast<double>(c.saturated)}});
+  }
+}
+
+void restoreTargets(Frame& frame) {
+  const auto numbers = [&](const Attribute& a, std::size_t count) {
+    const auto values = numbersOf(a);
+    return values && values->size() == count ? *values : std::vector<double>();
+  };
+  const auto rowNamed = [&](const std::string& name) -> TargetRow& {
+    for (TargetRow& t : frame.targets)
+      if (t.name == name) return t;
+    frame.targets.emplace_back().name = name;
+    return frame.targets.back();
+  };
+  for (const Attribute& a : frame.attributes) {
+    const std::size_t dot = a.name.rfind('.');
+    if (!a.name.starts_with(kTarget) || dot < kTarget.size() + 1) continue;
+    const std::string name = a.name.substr(kTarget.size(), dot - kTarget.size()), what = a.name.substr(dot + 1);
+    if (what == "kind") {
+      if (const auto* kind = std::get_if<std::string>(&a.value)) rowNamed(name).kind = *kind;
+    } else if (what == "place") {
+      const auto v = numbers(a, 6);
+      if (v.empty()) continue;
+      TargetRow& t = rowNamed(name);
+      t.column = v[0], t.row = v[1], t.left = v[2], t.top = v[3], t.right = v[4], t.bottom = v[5];
+    } else if (what == "sight") {
+      const auto v = numbers(a, 5);
+      if (v.empty()) continue;
+      TargetRow& t = rowNamed(name);
+      t.range_m = v[0], t.rangeRate_m_s = v[1], t.sightRight_rad_s = v[2], t.sightUp_rad_s = v[3], t.visible = v[4];
+    } else if (const auto v = numbers(a, 5); !v.empty()) {
+      rowNamed(name).channels.push_back({what, "", v[0], v[1], v[2], v[3], static_cast<int>(v[4])});
+    }
   }
 }
 
