@@ -38,6 +38,7 @@ const std::vector<std::string> kOrder = {"sim/radiometry",
                                          "sim/stream/gige",
                                          "sim/stream/cigi",
                                          "sim/stream/gstreamer",
+                                         "sim/stream/hdf5",
                                          "sim/stream/projector",
                                          "sim/stream",
                                          "sim/run"};
@@ -96,7 +97,11 @@ std::string violation(const Use& use) {
         {"imgui", {"scenarios/view/window/"}},
         {"backends/imgui", {"scenarios/view/window/"}},
         {"X11/", {"sim/stream/projector/"}},
-        {"gst/", {"sim/stream/gstreamer/"}}};
+        {"gst/", {"sim/stream/gstreamer/"}},
+        {"hdf5.h", {"sim/stream/hdf5/"}},
+        {"pybind11/", {"scenarios/python/"}},
+        {"sqlite3.h", {"scenarios/sweep/"}},
+        {"boost/", {"scenarios/sweep/"}}};
     for (const auto& [library, allowed] : homes) {
       if (use.included.rfind(library, 0) != 0) continue;
       for (const auto& home : allowed)
