@@ -17,7 +17,7 @@ constexpr int kSolveFewestRepeats = 4, kSolveMostRepeats = 100000;
 constexpr double kSolveDoubt = 0.05;
 /// Of finding three means off a line that lie on one.
 constexpr double kSolveBentDoubt = 0.01;
-/// The last three places are moved where the crossing lies beyond them, and set further apart where they do not tell the slope: so often at most.
+/// The last three places are moved where the crossing lies beyond them: so often at most.
 constexpr int kSolveMostMoves = 4;
 /// Draws at each of the last two places of a measure that seems to have no noise and few values: of one that is either as often, 1 in 1000 is missed.
 constexpr int kSolveCommonDraws = 6;
@@ -250,7 +250,8 @@ class SolveSearch {
     const double rising = high.mean() - low.mean(), slope = rising / (high.at - low.at);
     const int aside = std::max(wish_.repeats / 2, kSolveFewestRepeats), within = 2 * wish_.repeats;
     // The slope is then sure to a sixth.
-    double step = std::clamp(6.0 * std::sqrt(0.5 * noise / aside) / std::abs(slope), 0.5 * wish_.tolerance, 0.5), centre = between(low, high);
+    const double step = std::clamp(6.0 * std::sqrt(0.5 * noise / aside) / std::abs(slope), 0.5 * wish_.tolerance, 0.5);
+    double centre = between(low, high);
     for (int move = 0;; ++move) {
       centre = std::clamp(centre, step, 1.0 - step);
       std::array<SolvePlace, 3> places;
@@ -261,11 +262,7 @@ class SolveSearch {
       }
       const Crossing crossing = crossingOf(places, rising);
       if (move < kSolveMostMoves && std::abs(crossing.at) > 1.0) {
-        centre += step * crossing.at;
-        continue;
-      }
-      if (move < kSolveMostMoves && !crossing.interval) {
-        step = std::min(2.0 * step, 0.5);
+        centre += step * std::clamp(crossing.at, -2.0, 2.0);
         continue;
       }
       double from = places[0].at, to = places[2].at;

@@ -7,7 +7,8 @@
 //   middle one, half of them at the two beside it, which give the slope. Where the line meets the target is x, and the interval is Fieller's: noise over slope
 //   where the slope is sure.
 // Source: Student 1908; Fieller 1954, J. R. Stat. Soc. B 16, 175; Welch 1947, Biometrika 34, 28 (degrees of freedom).
-// Valid: a mean that crosses the target once in the range. Where the measure bends so much between the three places that the line is off by more than its noise
+// Valid: a mean that crosses the target once in the range, with a slope there. Where the measure bends so much between the three places that the line is off by
+// more than its noise
 //   the interval holds all three. Of a measure of two values (seen or not) with 64 repeats the interval holds the crossing of 1/2 and of 0.8 as it should,
 //   that of 0.95 in 80 % of cases only.
 #include <cstdint>
