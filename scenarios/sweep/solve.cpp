@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <optional>
 #include <random>
 
@@ -17,7 +18,7 @@ constexpr int kSolveFewestRepeats = 4, kSolveMostRepeats = 100000;
 constexpr double kSolveDoubt = 0.05;
 /// Of finding three means off a line that lie on one.
 constexpr double kSolveBentDoubt = 0.01;
-/// The last three places are moved where the crossing lies beyond them, and set further apart where they do not tell the slope: so often at most.
+/// The last three places are moved where the crossing lies beyond them: so often at most.
 constexpr int kSolveMostMoves = 4;
 /// Draws at each of the last two places of a measure that seems to have no noise and few values: of one that is either as often, 1 in 1000 is missed.
 constexpr int kSolveCommonDraws = 6;
@@ -28,18 +29,18 @@ struct SolvePlace {
   std::vector<double> values;
 
   int count() const { return static_cast<int>(values.size()); }
-  double mean() const {
-    double sum = 0.0;
-    for (const double v : values) sum += v / count();
-    return sum;
+  bool isAlike() const {
+    return std::all_of(values.begin(), values.end(), [this](double v) { return v == values.front(); });
   }
-  /// Sum of squares about the mean.
-  double squares() const {
+  /// Of draws that are alike exactly what they are.
+  double mean() const { return isAlike() ? values.front() : std::accumulate(values.begin(), values.end(), 0.0) / count(); }
+  double variance() const {
+    if (isAlike()) return 0.0;
+    const double middle = mean();
     double sum = 0.0;
-    for (const double v : values) sum += (v - mean()) * (v - mean());
-    return sum;
+    for (const double v : values) sum += (v - middle) * (v - middle);
+    return sum / (count() - 1);
   }
-  double variance() const { return count() > 1 ? squares() / (count() - 1) : 0.0; }
   double standardError() const { return std::sqrt(variance() / count()); }
 };
 
@@ -68,7 +69,7 @@ class SolveSearch {
   Solution run() {
     SolvePlace low{0.0, {}}, high{1.0, {}};
     for (SolvePlace* end : {&low, &high}) draw(*end), draw(*end);
-    result_.isNoisy = low.variance() > 0.0 || high.variance() > 0.0;
+    result_.isNoisy = !low.isAlike() || !high.isAlike();
     if (!result_.isNoisy) {
       keep(low), keep(high);
       if (quiet(low, high)) return std::move(result_);
@@ -103,7 +104,7 @@ class SolveSearch {
   SolveSide told(SolvePlace& place) {
     for (int wanted = kSolveFewestRepeats;; wanted = std::min(2 * wanted, wish_.repeats)) {
       while (place.count() < wanted) draw(place);
-      const bool isAlike = !(place.variance() > 0.0),
+      const bool isAlike = place.isAlike(),
                  isKnown =
                      isAlike ? toldByAlike(place) : std::abs(place.mean() - wish_.target) > studentQuantile(sure_, place.count() - 1) * place.standardError();
       if (!isKnown && wanted < wish_.repeats) continue;
@@ -119,7 +120,7 @@ class SolveSearch {
   }
 
   std::string described(const SolvePlace& place) const {
-    return print("%g%s at %s = %g", place.mean(), place.variance() > 0.0 ? print(" +- %.2g", place.standardError()).c_str() : "", wish_.factor.c_str(),
+    return print("%g%s at %s = %g", place.mean(), !place.isAlike() ? print(" +- %.2g", place.standardError()).c_str() : "", wish_.factor.c_str(),
                  xAt(place.at));
   }
 
@@ -250,7 +251,8 @@ class SolveSearch {
     const double rising = high.mean() - low.mean(), slope = rising / (high.at - low.at);
     const int aside = std::max(wish_.repeats / 2, kSolveFewestRepeats), within = 2 * wish_.repeats;
     // The slope is then sure to a sixth.
-    double step = std::clamp(6.0 * std::sqrt(0.5 * noise / aside) / std::abs(slope), 0.5 * wish_.tolerance, 0.5), centre = between(low, high);
+    const double step = std::clamp(6.0 * std::sqrt(0.5 * noise / aside) / std::abs(slope), 0.5 * wish_.tolerance, 0.5);
+    double centre = between(low, high);
     for (int move = 0;; ++move) {
       centre = std::clamp(centre, step, 1.0 - step);
       std::array<SolvePlace, 3> places;
@@ -261,11 +263,7 @@ class SolveSearch {
       }
       const Crossing crossing = crossingOf(places, rising);
       if (move < kSolveMostMoves && std::abs(crossing.at) > 1.0) {
-        centre += step * crossing.at;
-        continue;
-      }
-      if (move < kSolveMostMoves && !crossing.interval) {
-        step = std::min(2.0 * step, 0.5);
+        centre += step * std::clamp(crossing.at, -2.0, 2.0);
         continue;
       }
       double from = places[0].at, to = places[2].at;

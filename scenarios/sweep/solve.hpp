@@ -7,9 +7,9 @@
 //   middle one, half of them at the two beside it, which give the slope. Where the line meets the target is x, and the interval is Fieller's: noise over slope
 //   where the slope is sure.
 // Source: Student 1908; Fieller 1954, J. R. Stat. Soc. B 16, 175; Welch 1947, Biometrika 34, 28 (degrees of freedom).
-// Valid: a mean that crosses the target once in the range. Where the measure bends so much between the three places that the line is off by more than its noise
-//   the interval holds all three. Of a measure of two values (seen or not) with 64 repeats the interval holds the crossing of 1/2 and of 0.8 as it should,
-//   that of 0.95 in 80 % of cases only.
+// Valid: a mean that crosses the target once in the range, with a slope there. Where it bends so much between the three places that the line is off by more
+//   than its noise the interval holds all three. Of a measure of two values (seen or not) with 64 repeats the interval holds the crossing of 1/2 and of 0.8 as
+//   it should, that of 0.95 in nine cases of ten.
 #include <cstdint>
 #include <functional>
 #include <string>
@@ -26,7 +26,7 @@ struct SolveWish {
   double target = 0.0;
   double low = 0.0, high = 0.0;                       ///< of x
   bool logarithmic = false;                           ///< x by ratios: both ends above 0
-  int repeats = 16;                                   ///< at most at a place, and at each of the last three; 4 or more
+  int repeats = 16;                                   ///< at most at a place, but for the last three; 4 or more
   double tolerance = 1e-3;                            ///< of the range (of its logarithm): no finer is bisected
   std::uint64_t seed = 0;                             ///< all of the result follows from it
   std::string factor = "x", measure = "the measure";  ///< for messages
@@ -41,8 +41,8 @@ struct SolveTry {
 
 struct Solution {
   double x = 0.0;
-  double low95 = 0.0,
-         high95 = 0.0;  ///< holds the crossing in 95 % of all cases, cut off at the range's ends; of a measure without noise the places that it lies between
+  /// Hold the crossing in 95 % of all cases, cut off at the range's ends; of a measure without noise the places that it lies between.
+  double low95 = 0.0, high95 = 0.0;
   bool isNoisy = false;
   int evaluations = 0;
   std::vector<SolveTry> tried;  ///< in their order

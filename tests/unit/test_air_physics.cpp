@@ -199,7 +199,7 @@ TEST(AirPhysics, IsWhatTheReferenceDraws) {
 
 // Bodies, their materials' data and fields are not the air's: a body in the way takes nothing.
 TEST(AirPhysics, BodiesAreLeftOut) {
-  const std::string air = "atmosphere: {extinction: 0.2 /km, temperature: 280 K}\n";
+  const std::string air = "atmosphere: {extinction: 0.2 /km, temperature: 280 K}\nground: {material: blackbody, temperature: 290 K}\n";
   const Simulation sim =
       under(air +
             "materials: {thin: {components: [{reflection: lambertian, reflectance: {wavelength: um, unit: \"1\", values: [[3.4, 0.2], [4.1, 0.3]]}}]}}\n"
