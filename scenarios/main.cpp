@@ -7,6 +7,7 @@
 #include "scenarios/commands/commands.hpp"
 #include "scenarios/commands/process.hpp"
 #include "scenarios/sweep/sweep_command.hpp"
+#include "scenarios/sweep/sweep_file.hpp"
 #include "scenarios/view/view_command.hpp"
 #include "sim/frame/version.hpp"
 
@@ -18,7 +19,7 @@ using namespace pitviper;
 std::vector<CommandLine> commands() {
   return {runCommand(),       sweepCommand(),      viewCommand(),       checkCommand(),      planCommand(),     auditCommand(),         infoCommand(),          integrateCommand(),
           streamCommand(),    selfTestCommand(),   measureCommand(),    benchCommand(),    scenarioBenchCommand(), accuracyBenchCommand(), firstBenchCommand(),
-          onceBenchCommand(), guardBenchCommand(), phongBenchCommand(), materialCommand(), atmosphereCommand(),    skyCommand(),           keysCommand()};
+          onceBenchCommand(), guardBenchCommand(), phongBenchCommand(), materialCommand(), atmosphereCommand(),    skyCommand(),           keysCommand(sweepKeyReference())};
 }
 
 void printHelp() {
@@ -27,6 +28,7 @@ void printHelp() {
   for (const CommandLine& c : commands())
     if (c.name.find(' ') == c.name.npos) row(c.name, c.summary);
   row("test", "build and run every test (the pitviper script)");
+  row("python", "Python with `import pitviper` (the pitviper script)");
   row("figures", "write the figures in the documents anew (the pitviper script)");
   std::printf(
       "\npitviper COMMAND --help tells more. Exit codes: 0 done, 1 the machine could not, 2 a mistake in the input, 3 frames of a stream unaccounted for, 4 an "

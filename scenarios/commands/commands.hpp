@@ -16,7 +16,7 @@ CommandLine atmosphereCommand();
 CommandLine materialCommand();
 CommandLine measureCommand();
 CommandLine skyCommand();
-CommandLine keysCommand();
+CommandLine keysCommand(const std::string& ofSweeps);
 CommandLine streamCommand();
 CommandLine selfTestCommand();
 CommandLine benchCommand();

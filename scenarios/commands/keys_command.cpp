@@ -5,9 +5,12 @@
 
 namespace pitviper {
 
-CommandLine keysCommand() {
-  return {{"keys", "", "the reference of every scenario key (Markdown)"}, "Prints the key reference as in scenarios/README.md.", {}, [](const Arguments&) {
-            std::fputs(keyReference().c_str(), stdout);
+CommandLine keysCommand(const std::string& ofSweeps) {
+  return {{"keys", "", "the reference of every key of scenarios and sweeps (Markdown)"},
+          "Prints the key reference as in scenarios/README.md.",
+          {},
+          [ofSweeps](const Arguments&) {
+            std::fputs((keyReference() + ofSweeps).c_str(), stdout);
             return 0;
           }};
 }

@@ -295,10 +295,12 @@ class SweepReader {
 
 Sweep readSweep(const std::filesystem::path& file) { return SweepReader(file).read(); }
 
-const std::vector<ParameterTable>& sweepTables() {
-  static const std::vector<ParameterTable> all = {sweepTable(),        factorTable(),           normalTable(),       factorGridTable(),
-                                                  truthMeasureTable(), statisticMeasureTable(), pythonMeasureTable()};
-  return all;
+std::string sweepKeyReference() {
+  std::string text;
+  for (const ParameterTable& table :
+       {sweepTable(), factorTable(), normalTable(), factorGridTable(), truthMeasureTable(), statisticMeasureTable(), pythonMeasureTable()})
+    text += "\n" + describe(table);
+  return text;
 }
 
 }  // namespace pitviper

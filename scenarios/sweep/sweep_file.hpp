@@ -8,7 +8,6 @@
 #include "scenarios/sweep/sample_design.hpp"
 #include "scenarios/sweep/sweep.hpp"
 #include "scenarios/sweep/sweep_draw.hpp"
-#include "sim/parameters/table.hpp"
 
 namespace pitviper {
 
@@ -34,7 +33,7 @@ struct Sweep {
 /// Errors: UserError with the place of every mistake in the file, and of designs that the memory does not hold.
 Sweep readSweep(const std::filesystem::path& file);
 
-/// What the file can hold, for the key reference.
-const std::vector<ParameterTable>& sweepTables();
+/// What the file can hold, for scenarios/README.md: behind the keys of scenarios.
+std::string sweepKeyReference();
 
 }  // namespace pitviper

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "scenarios/commands/commands.hpp"
+#include "scenarios/sweep/sweep_command.hpp"
 
 namespace pitviper::test {
 namespace {
@@ -109,7 +110,7 @@ TEST(Options, OfEveryCommandAreWhole) {
   for (const CommandLine& c :
        {runCommand(),        checkCommand(),      planCommand(),     auditCommand(),         infoCommand(),          integrateCommand(),  streamCommand(),
         selfTestCommand(),   measureCommand(),    benchCommand(),    scenarioBenchCommand(), accuracyBenchCommand(), firstBenchCommand(), onceBenchCommand(),
-        guardBenchCommand(), phongBenchCommand(), materialCommand(), atmosphereCommand(),    skyCommand(),           keysCommand()}) {
+        guardBenchCommand(), phongBenchCommand(), materialCommand(), atmosphereCommand(),    skyCommand(),           keysCommand({}),     sweepCommand()}) {
     std::set<std::string> names;
     for (const Option& o : c.options) {
       EXPECT_FALSE(o.help.empty()) << c.name << o.name;

@@ -6,6 +6,7 @@
 
 #include "scenarios/reader/scenario_reader.hpp"
 #include "scenarios/reader/yaml_tree.hpp"
+#include "scenarios/sweep/sweep_file.hpp"
 #include "sim/parameters/spectrum_value.hpp"
 #include "sim/parameters/time_course.hpp"
 #include "sim/parameters/units.hpp"
@@ -190,7 +191,7 @@ TEST(Reader, KeyReferenceIsCurrent) {
   const size_t begin = readme.find("<!-- keys -->\n"), end = readme.find("<!-- end of keys -->");
   ASSERT_NE(begin, std::string::npos);
   ASSERT_NE(end, std::string::npos);
-  EXPECT_TRUE(readme.substr(begin + 14, end - begin - 14) == keyReference())
+  EXPECT_TRUE(readme.substr(begin + 14, end - begin - 14) == keyReference() + sweepKeyReference())
       << "run: pitviper keys, and put its output between the marks in scenarios/README.md";
 }
 
