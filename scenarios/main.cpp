@@ -17,9 +17,17 @@ using namespace pitviper;
 
 /// As `pitviper --help` lists them; those of one first word together, the plain one before the others.
 std::vector<CommandLine> commands() {
-  return {runCommand(),       sweepCommand(),      viewCommand(),       checkCommand(),      planCommand(),     auditCommand(),         infoCommand(),          integrateCommand(),
-          streamCommand(),    selfTestCommand(),   measureCommand(),    benchCommand(),    scenarioBenchCommand(), accuracyBenchCommand(), firstBenchCommand(),
-          onceBenchCommand(), guardBenchCommand(), phongBenchCommand(), materialCommand(), atmosphereCommand(),    skyCommand(),           keysCommand(sweepKeyReference())};
+  return {runCommand(),           sweepCommand(),
+          viewCommand(),          checkCommand(),
+          planCommand(),          auditCommand(),
+          infoCommand(),          integrateCommand(),
+          streamCommand(),        selfTestCommand(),
+          measureCommand(),       benchCommand(),
+          scenarioBenchCommand(), accuracyBenchCommand(),
+          firstBenchCommand(),    onceBenchCommand(),
+          guardBenchCommand(),    phongBenchCommand(),
+          materialCommand(),      atmosphereCommand(),
+          skyCommand(),           keysCommand(sweepKeyReference())};
 }
 
 void printHelp() {

@@ -75,7 +75,8 @@ Child started(const Arguments& arguments, std::vector<std::string>& variables) {
   posix_spawnattr_setsigmask(&settings.attributes, &none);  // this process's threads have theirs blocked: one waits for them
   posix_spawnattr_setflags(&settings.attributes, POSIX_SPAWN_SETSIGMASK);
   Child child{0, ends[0]};
-  const int failed = ::posix_spawn(&child.process, "/proc/self/exe", &settings.files, &settings.attributes, pointersTo(words).data(), pointersTo(variables).data());
+  const int failed =
+      ::posix_spawn(&child.process, "/proc/self/exe", &settings.files, &settings.attributes, pointersTo(words).data(), pointersTo(variables).data());
   ::close(ends[1]);
   if (failed != 0) {
     ::close(ends[0]);
@@ -86,7 +87,8 @@ Child started(const Arguments& arguments, std::vector<std::string>& variables) {
 
 }  // namespace
 
-std::vector<ChildResult> runChildren(const std::vector<Arguments>& all, const std::map<std::string, std::string>& environment, const std::function<void()>& tick) {
+std::vector<ChildResult> runChildren(const std::vector<Arguments>& all, const std::map<std::string, std::string>& environment,
+                                     const std::function<void()>& tick) {
   std::vector<std::string> variables = environmentWith(environment);
   std::vector<Child> children;
   std::vector<ChildResult> results(all.size());

@@ -8,8 +8,8 @@ namespace pitviper {
 
 class PlanTurn {
  public:
-  /// Waits while another process of this machine makes the plan of a camera as it is drawn; `waiting` is called meanwhile and may throw. Where there is no cache
-  /// to find plans in, it waits for nobody.
+  /// Waits while another process of this machine makes the plan of a camera as it is drawn; `waiting` is called meanwhile and may throw. Where there is no
+  /// cache to find plans in, it waits for nobody.
   PlanTurn(const Simulation& simulation, const Camera& drawn, const std::function<void()>& waiting);
   ~PlanTurn();
   PlanTurn(const PlanTurn&) = delete;

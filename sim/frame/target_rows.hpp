@@ -5,9 +5,9 @@
 
 namespace pitviper {
 
-/// What a frame's pixels say of its targets (those that are full), and their rows as attributes `target.<name>.`: `kind`, `place` [column, row, left, top, right,
-/// bottom], `sight` [range, its rate, turning to the right and up, share that is visible], and of each channel `<channel>` [own, total, contrast, signal to
-/// noise, full pixels]. `marks`: of the frame's pixels.
+/// What a frame's pixels say of its targets (those that are full), and their rows as attributes `target.<name>.`: `kind`, `place` [column, row, left, top,
+/// right, bottom], `sight` [range, its rate, turning to the right and up, share that is visible], and of each channel `<channel>` [own, total, contrast,
+/// signal to noise, full pixels]. `marks`: of the frame's pixels.
 void finishTargets(Frame& frame, const CountMarks& marks);
 
 /// Rows as such attributes tell them, without the units of intensities. Attributes that are none of them are passed over.

@@ -33,7 +33,7 @@ const char* const kScene =
     "    look_at: ball\n"
     "    film: {width: 24, height: 16}\n"
     "    samples: 4\n"
-    "    field_of_view: 3 deg\n"
+    "    field_of_view: 6 deg\n"
     "    aperture: 20 mm\n"
     "    exposure: 1 ms\n"
     "    truth: [range, entity, temperature, targets]\n"
@@ -78,7 +78,7 @@ class SweepCommand : public ::testing::Test {
     }
     return rows;
   }
-  TemporaryFolder folder_{"sweep"};
+  TemporaryFolder folder_;
 };
 
 TEST_F(SweepCommand, TheTableIsTheSameHoweverItIsComeBy) {
