@@ -209,6 +209,7 @@ void bindScenes(py::module_& m) {
       .def(
           "set", [](OpenScene& s, const std::string& path, const std::string& yaml) { s.change(s.source().with(path, yaml).sets); },
           py::call_guard<py::gil_scoped_release>())
+      .def("expect", &OpenScene::expect, py::call_guard<py::gil_scoped_release>())
       .def("get", [](const OpenScene& s, const std::string& path) { return objectOf(valueAt(s.tree(), path)); })
       .def("tree", [](const OpenScene& s) { return objectOf(s.tree()); })
       .def("command",

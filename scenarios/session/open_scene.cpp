@@ -69,7 +69,8 @@ struct OpenScene::Told {
 struct OpenScene::Desk {
   struct Drawn {
     std::shared_ptr<const Simulation> sim;
-    std::string words;  ///< wordsOf() its tree
+    std::shared_ptr<const Simulation> planned;  ///< what its line looks at: that, with frames of what is expected
+    std::string words;                          ///< wordsOf() its tree
     std::shared_ptr<const ExpandedScenario> expanded;
     std::unique_ptr<CameraLine> line;
     std::unique_ptr<DrawingsBeside> beside;
@@ -96,18 +97,20 @@ struct OpenScene::Desk {
   }
 
   /// By the plan of what was drawn before, where that holds, or another.
-  Drawn made(const std::shared_ptr<const Simulation>& sim, const std::shared_ptr<const ExpandedScenario>& expanded, std::size_t number, const Drawn* before,
-             const Planning& planning) {
-    takeBodies(sim);
+  Drawn made(const OpenScene& scene, const std::shared_ptr<const Simulation>& own, const std::shared_ptr<const ExpandedScenario>& expanded, std::size_t number,
+             const Drawn* before, const Planning& planning) {
+    takeBodies(own);
+    const auto sim = scene.expected_.empty() ? own : std::make_shared<const Simulation>(withFramesOf(*own, scene.expected_));
     const Camera& camera = sim->cameras[number];
-    const Plan* earlier = before ? before->plan() : nullptr;
+    // Its tables are of its air alone.
+    const Plan* earlier = before && before->plan() && sameAir(*before->sim, *own) ? before->plan() : nullptr;
     const Camera drawn = drawnCamera(camera);
     const PlanTurn turn(*sim, drawn, [&] { planning(0.0); });
     Plan plan = cameraPlan(*sim, drawn, planning, earlier);
     auto line = std::make_unique<CameraLine>(*sim, camera, shaderLibrary(),
                                              std::make_unique<CameraDrawing>(*sim, camera, std::move(plan), shaderLibrary(), bodies), false);
-    if (earlier && sameAir(*before->sim, *sim) && drawAlike(*earlier, line->renderer().plan())) line->renderer().takeAir(before->line->renderer());
-    return {sim, wordsOf(expanded->tree), expanded, std::move(line), nullptr, {}};
+    if (earlier && drawAlike(*earlier, line->renderer().plan())) line->renderer().takeAir(before->line->renderer());
+    return {own, sim, wordsOf(expanded->tree), expanded, std::move(line), nullptr, {}};
   }
 
   /// Whether what is drawn by one serves a scene: they differ in what a world holds alone, and that is within limits, by which plans are made.
@@ -122,7 +125,7 @@ struct OpenScene::Desk {
   Drawn& foundation(const OpenScene& scene, std::size_t number, const Planning& planning) {
     for (auto& [camera, drawn] : kept)
       if (camera == number && drawn.sim == scene.kept_) return drawn;
-    kept.emplace_back(number, made(scene.kept_, scene.keptExpanded_, number, nullptr, planning));
+    kept.emplace_back(number, made(scene, scene.kept_, scene.keptExpanded_, number, nullptr, planning));
     return kept.back().second;
   }
 
@@ -136,7 +139,7 @@ struct OpenScene::Desk {
     if (found == kept.end()) {
       const auto expanded = std::make_shared<const ExpandedScenario>(ExpandedScenario{std::move(tree), words});
       const auto sim = std::make_shared<const Simulation>(scene.source_.read(*expanded));
-      kept.emplace_front(number, made(sim, expanded, number, &first, planning));
+      kept.emplace_front(number, made(scene, sim, expanded, number, &first, planning));
       found = kept.begin();
       if (kept.size() > kMostKept) {
         auto last = std::prev(kept.end());
@@ -165,11 +168,11 @@ struct OpenScene::Desk {
     Drawn fresh;
     if (draft && hasDraft(*sim, sim->cameras[number])) {
       takeBodies(sim);
-      fresh = {sim, wordsOf(scene.expanded_->tree), scene.expanded_, nullptr, nullptr, {}};
+      fresh = {sim, sim, wordsOf(scene.expanded_->tree), scene.expanded_, nullptr, nullptr, {}};
       fresh.line = std::make_unique<CameraLine>(*sim, sim->cameras[number], shaderLibrary(), bodies, planning, false, true);
       fresh.beside = std::make_unique<DrawingsBeside>(*sim, shaderLibrary(), std::vector<std::size_t>{number}, DrawingsBeside::Which::First, time_s);
     } else {
-      fresh = made(sim, scene.expanded_, number, scene.kept_ ? &foundation(scene, number, planning) : &own, planning);
+      fresh = made(scene, sim, scene.expanded_, number, scene.kept_ ? &foundation(scene, number, planning) : &own, planning);
     }
     own.beside.reset();  // before what it looks at
     own.line.reset();
@@ -261,6 +264,19 @@ void OpenScene::keepDrawings() {
   keptExpanded_ = expanded_;
 }
 
+void OpenScene::expect(const std::vector<std::vector<std::string>>& variations, double time_s) {
+  const Use use(*this);
+  std::vector<ExpectedWorld> expected;
+  for (const auto& sets : variations) {
+    SceneSource source = source_;
+    source.sets.insert(source.sets.end(), sets.begin(), sets.end());
+    const auto sim = std::make_shared<const Simulation>(source.read(source.expanded()));
+    expected.push_back({sim, advance(*sim, time_s)});
+  }
+  expected_ = std::move(expected);
+  onDesk([](Desk& desk, const auto&) { desk.now.clear(), desk.kept.clear(); });
+}
+
 void OpenScene::command(const Value& words, double time_s) {
   const Use use(*this);
   const Command command = readCommand(words, *simulation_, time_s);
@@ -294,7 +310,7 @@ DrawnFrame OpenScene::draw(const DrawWish& wish, const SceneProgress& progress) 
         const Camera& camera = sim->cameras[wish.camera];
         const StateAt own = stateAt(sim);
         Desk::Drawn& drawn = desk.lineFor(*this, wish.camera, own, wish.time_s, wish.draft, planning);
-        const bool isOther = drawn.sim != sim;
+        const bool isOther = drawn.sim != sim || drawn.planned != sim;
         const StateAt state = isOther ? StateAt([&camera, own](double t) { return worldFor(camera, own(t)); }) : own;
         const int frame = frameAt(sim->time, wish.time_s);
         if (remembers(camera, *sim) && drawn.last) {

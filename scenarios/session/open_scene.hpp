@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "scenarios/session/expected_worlds.hpp"
 #include "scenarios/session/gl_thread.hpp"
 #include "scenarios/session/scene_source.hpp"
 #include "sim/camera/audit.hpp"
@@ -57,6 +58,9 @@ class OpenScene {
   /// What it is now is what later changes are held against, not each other: a picture does not depend on those before. What has been drawn with other keys than
   /// a world holds is kept too, as far as that may be.
   void keepDrawings();
+  /// Plans from here on are made for these variations too ("path=value" each, besides what is set), at a time: within the scenario's limits pictures between
+  /// them need no plan of their own. Errors: UserError of the first that cannot be read.
+  void expect(const std::vector<std::vector<std::string>>& variations, double time_s);
 
   /// A command with the words of a scenario's `commands`, from `time_s` on. Errors: UserError.
   void command(const Value& words, double time_s);
@@ -88,6 +92,7 @@ class OpenScene {
   int lastTick_ = 0;
   std::shared_ptr<const Simulation> kept_;  ///< of keepDrawings(); null: it was not called
   std::shared_ptr<const ExpandedScenario> keptExpanded_;
+  std::vector<ExpectedWorld> expected_;
   std::mutex inUse_;
   std::unique_ptr<GlThread> thread_;
   std::unique_ptr<Desk> desk_;  ///< of that thread

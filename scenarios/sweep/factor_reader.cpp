@@ -15,7 +15,7 @@ namespace {
 constexpr double kLeastShare = 1e-6;
 constexpr std::size_t kMostFactorValues = 65536;
 
-/// Numbers of one factor, which have one unit.
+/// Numbers of one factor, told in the unit of the first.
 class UnitOfFactor {
  public:
   explicit UnitOfFactor(std::string name) : name_(std::move(name)) {}
@@ -30,6 +30,8 @@ class UnitOfFactor {
     if (!parsed) throw UserError(value.where, "there is no unit " + tokenOf(unit), "a unit such as m, km/h, W/(m2 sr um)", "correct the unit");
     if (known_ && unit != unit_) {
       const auto same = convert(*q, unit_);
+      // What counts from another zero is no difference: a sigma of 5 K is none of -268 degC.
+      if (same && parsed->offset == 0.0 && !counted_) return *same;
       throw UserError(value.where, "'" + name_ + "' has the units " + shown(unit_) + " and " + shown(unit), "one unit within a factor",
                       same ? "write '" + numberText(*same) + (unit_.empty() ? "" : " " + unit_) + "'" : "correct the unit");
     }

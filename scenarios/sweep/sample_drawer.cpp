@@ -20,6 +20,24 @@ std::vector<std::string> setsOf(const Sweep& sweep, const Sample& sample) {
   return sets;
 }
 
+/// Samples that plans are made for besides those of the extremes of each factor.
+constexpr std::size_t kExpected = 24;
+
+/// Those of the extremes of each factor, and as many as kExpected evenly over the whole design: the same whoever draws it.
+std::vector<const Sample*> spreadOver(const Sweep& sweep) {
+  std::set<std::size_t> places;
+  const std::size_t count = sweep.samples.size();
+  for (std::size_t f = 0; f < sweep.factors.size(); ++f) {
+    const auto byFactor = [f](const Sample& a, const Sample& b) { return a.values[f] < b.values[f]; };
+    const auto [low, high] = std::minmax_element(sweep.samples.begin(), sweep.samples.end(), byFactor);
+    places.insert({static_cast<std::size_t>(low - sweep.samples.begin()), static_cast<std::size_t>(high - sweep.samples.begin())});
+  }
+  for (std::size_t k = 0; k < std::min(kExpected, count); ++k) places.insert(k * count / std::min(kExpected, count));
+  std::vector<const Sample*> samples;
+  for (const std::size_t p : places) samples.push_back(&sweep.samples[p]);
+  return samples;
+}
+
 }  // namespace
 
 SampleDrawer::SampleDrawer(const Sweep& sweep, const std::vector<std::filesystem::path>& roots)
@@ -34,6 +52,13 @@ SampleDrawer::SampleDrawer(const Sweep& sweep, const std::vector<std::filesystem
   }
   scene_.keepDrawings();
   scene_.change(setsOf(sweep, sweep.samples.front()));
+}
+
+void SampleDrawer::prepare() {
+  std::vector<std::vector<std::string>> some;
+  for (const Sample* s : spreadOver(sweep_)) some.push_back(s->sets);
+  scene_.change(sweep_.sets);
+  scene_.expect(some, simulation_->time.at(sweep_.frame));
 }
 
 DrawnSample SampleDrawer::draw(const Sample& sample, bool allCameras) {

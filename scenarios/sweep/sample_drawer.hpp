@@ -23,6 +23,8 @@ class SampleDrawer {
 
   /// The scenario with what all samples have set.
   const Simulation& simulation() const { return *simulation_; }
+  /// Once before the first: plans are made for samples all over the design.
+  void prepare();
   /// `allCameras`: not only those that are measured. A sample whose scenario has a mistake, or whose picture cannot be drawn, has a reason instead of measures.
   DrawnSample draw(const Sample& sample, bool allCameras);
   /// Of all columns of measures, as far as frames have told them.

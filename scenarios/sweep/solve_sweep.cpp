@@ -44,6 +44,7 @@ int solveSweep(const Sweep& sweep, const std::vector<std::filesystem::path>& roo
   if (!drawnFrom || !varied.choices.empty())
     throw UserError({"--over " + wanted.factor, 0, 0, -1}, "it has no range", "a factor that is uniform, log_uniform or normal 'within'", "give it one");
   SampleDrawer drawer(sweep, roots);
+  drawer.prepare();
   SolveWish wish;
   wish.target = goal.value;
   wish.low = drawnFrom->quantile(kEnd), wish.high = drawnFrom->quantile(1.0 - kEnd);

@@ -47,6 +47,7 @@ Arguments carriedWords(const SweepWish& w) {
 void drawShare(const SweepWish& w, const Sweep& sweep, SampleDrawer& drawer, SweepStore& store, const std::vector<const Sample*>& samples,
                const std::function<void()>& drawn) {
   const bool keeps = keepsFrames(sweep);
+  if (!samples.empty()) drawer.prepare();
   if (keeps) ensureWritableFolder(std::filesystem::path(w.out) / "frames");
   FileOptions options;
   options.compression = ExrCompression::Zip;

@@ -12,6 +12,7 @@
 #include <sstream>
 
 #include "sim/frame/read_frame.hpp"
+#include "tests/support/figures.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -132,6 +133,58 @@ TEST_F(SweepCommand, MeasuresWhatIsThere) {
     EXPECT_GE(at(8), 1.0);
   }
   EXPECT_NE(text("out/sweep.html").find("<svg"), std::string::npos);
+}
+
+// One plan for many: towards the sun and away from it, near and far, in two kinds of haze, each sample against every wavelength in double precision.
+TEST_F(SweepCommand, SamplesKeepTheAccuracyAsked) {
+  write("air.yaml",
+        "accuracy: 1 %\n"
+        "limits: {range: [200 m, 5 km], temperature: [250 K, 400 K]}\n"
+        "atmosphere: clear_us76\n"
+        "sun: {azimuth: 150 deg, elevation: 40 deg, temperature: 5772 K}\n"
+        "materials: {grey: {components: [{reflection: lambertian, reflectance: 0.4}]}}\n"
+        "entities: [{name: ball, shape: {model: sphere, radius: 6 m}, material: grey, temperature: 300 K, position: [0 m, 1 km, 100 m]}]\n"
+        "cameras:\n"
+        "  - {name: cam, position: [0 m, 0 m, 10 m], look_at: ball, film: {width: 8, height: 8}, samples: 1, field_of_view: 2 deg, aperture: 20 mm, exposure: "
+        "1 ms,\n"
+        "     channels: [{name: mw, response: {band: [3.7 um, 4.2 um]}}]}\n");
+  write("s.yaml",
+        "sweep: air\nscenario: air.yaml\nsamples: 40\ndesign: latin_hypercube\n"
+        "vary:\n"
+        "  - {name: range, log_uniform: [400 m, 4 km]}\n"
+        "  - {name: aspect, uniform: [0 deg, 360 deg]}\n"
+        "  - {name: skin, key: entities.ball.temperature, uniform: [280 K, 350 K]}\n"
+        "  - {name: haze, values: [6 km, 40 km]}\n"
+        "set:\n"
+        "  atmosphere: {library: clear_us76, aerosol: rural, visibility: $haze}\n"
+        "  entities.ball.position: [\"= $range * sin($aspect)\", \"= $range * cos($aspect)\", \"= 0.3 * $range\"]\n"
+        "measures:\n"
+        "  - {name: sky, statistic: min, layer: mw.radiance}\n"
+        "  - {name: corner, statistic: mean, layer: mw.radiance, region: [0, 0, 1, 1]}\n"
+        "  - {name: middle, statistic: mean, layer: mw.radiance, region: [4, 4, 1, 1]}\n");
+  const Result r = sweep("s.yaml --out out --workers 2");
+  ASSERT_EQ(r.code, 0) << r.output;
+  const auto rows = table("out/sweep.csv");
+  ASSERT_EQ(rows.size(), 41u);
+  double worst = 0.0;
+  for (std::size_t k = 1; k < rows.size(); k += 5) {
+    const double range = 1.0 * std::stod(rows[k][2]), a = std::stod(rows[k][3]) * 3.14159265358979323846 / 180.0;
+    std::ostringstream set;
+    set.precision(17);
+    set << " --set accuracy=reference --set 'atmosphere={library: clear_us76, aerosol: rural, visibility: " << rows[k][5]
+        << " km}' --set entities.ball.temperature='" << rows[k][4] << " K' --set entities.ball.position='[" << range * std::sin(a) << " m, "
+        << range * std::cos(a) << " m, " << 0.3 * range << " m]'";
+    const Result ran = test::run("cd " + folder_.path().string() + " && XDG_CACHE_HOME=" + (folder_.path() / "cache").string() +
+                                 " PITVIPER_HOME=" + PITVIPER_SOURCE_DIR + " " + PITVIPER_PROGRAM + " run air.yaml --overwrite --out exact" + set.str());
+    ASSERT_EQ(ran.code, 0) << ran.output;
+    const auto pixels = readFrame(folder_.path() / "exact/cam_00000.exr").layers[0].pixels;
+    for (const auto& [column, pixel] : {std::pair{7u, 0u}, std::pair{8u, 36u}}) {
+      const double exact = static_cast<double>(pixels[pixel]), off = std::abs(std::stod(rows[k][column]) / exact - 1.0);
+      EXPECT_LE(off, 0.01) << "sample " << rows[k][0] << ", " << rows[0][column];
+      worst = std::max(worst, off);
+    }
+  }
+  bound("samples of a sweep drawn by shared plans at 1 %, sky and body, worst of 16", worst, 0.01, "asked for");
 }
 
 TEST_F(SweepCommand, GoesOnWhereItWasKilled) {

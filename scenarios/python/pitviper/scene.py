@@ -138,6 +138,13 @@ class Scene:
             sets[key] = f"{key}={_yaml(value)}"
         self._held.change(list(sets.values()))
 
+    def plan_for(self, variations: Iterable[Mapping[str, Any]], time: float | None = None) -> None:
+        """Plans from here on are made for these variations too, dicts of keys as of set(): within `limits`, pictures between them need no plan of their own.
+        Without it a plan is made for the scenario's own times, and `limits` for ranges, temperatures and levels alone, not for other directions towards the
+        sun."""
+        all_sets = [[f"{key}={_yaml(value)}" for key, value in keys.items()] for keys in variations]
+        self._held.expect(all_sets, self.now if time is None else float(time))
+
     def scenario(self) -> dict[str, Any]:
         """The whole scenario as it is read: parts put together, expressions worked out, changes in place."""
         return self._held.tree()
