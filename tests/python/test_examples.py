@@ -89,6 +89,9 @@ class Examples(unittest.TestCase):
             transmittance, black_K, grey_K = self.numbers(line, said)
             self.assertTrue(transmittance < before[0] and grey_K < black_K < before[1], said)
             before = (transmittance, black_K)
+        seen_K, formula_K = self.numbers("a black one # K, by the formula # K", said)
+        # The picture's accuracy of 1 % of the radiance, over 3.7 % of it a kelvin at 300 K.
+        self.assertLess(abs(seen_K - formula_K), 0.27)
         self.assert_pictures("apparent_temperature", "apparent_temperature_chart")
 
     def test_apparent_temperature(self):

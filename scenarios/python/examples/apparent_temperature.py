@@ -40,10 +40,11 @@ print(f"a table of {len(nodes)} entries: at most {np.max(np.abs(looked_up_K - te
 # Radiance at the camera is transmittance x (emissivity x Planck(skin) + (1 - emissivity) x Planck(around)) + what the air between sends.
 
 # %%
-keys = {"cameras.tracker.channels.mw.output": "apparent_temperature", "cameras.tracker.truth": ["temperature"]}
+keys = {"cameras.tracker.channels.mw.output": "apparent_temperature", "cameras.tracker.truth": ["temperature", "range"]}
 scene = pitviper.Scene.load(home / "scenarios/jet_and_sky.yaml", set=keys)
 wavelengths_um = np.linspace(*BAND, 400)
-eye, ahead = np.array([0.0, 0.0, 5.0]), np.array([-0.156, 0.911, 0.383])  # as the tracker looks at the jet
+eye, jet = (np.array(scene.world(1.0)[kind][name]["position_m"]) for kind, name in (("cameras", "tracker"), ("entities", "jet")))
+ahead = (jet - eye) / np.linalg.norm(jet - eye)
 
 
 def apparent_K(emissivity: float, range_m: float) -> float:
@@ -63,14 +64,19 @@ for range_m in (10.0, 1e3, 10e3):
 
 # %% [markdown]
 # ## A picture
-# The jet as the camera sees it: nothing but a black body close by would have its own temperature.
+# The jet as the camera sees it: its paint emits less than a black body, and a part of that is lost on the way. Painted ideally black it has what the formula
+# says.
 
 # %%
 frame = scene.render(1.0)
-seen_K = frame["mw.apparent_temperature"]
 skin = np.abs(frame["truth.temperature"] - SKIN_K) < 0.5
-paint = pitviper.material("grey_aircraft_paint").emissivity(wavelengths_um).mean()
-print(f"in the picture: the skin of {SKIN_K:g} K, emissivity {paint:.2f}, seems to have {np.median(seen_K[skin]):.1f} K; the sky {np.median(seen_K[:8]):.1f} K")
+seen_K = np.median(frame["mw.apparent_temperature"][skin])
+range_m = float(np.median(frame["truth.range"][skin]))
+paint = scene.material("grey_aircraft_paint").emissivity(wavelengths_um).mean()
+scene["entities.jet.material"] = "blackbody"
+black_K = np.median(scene.render(1.0)["mw.apparent_temperature"][skin])
+print(f"in the picture at {range_m:.0f} m: a painted skin (emissivity {paint:.2f}) seems to have {seen_K:.2f} K")
+print(f"a black one {black_K:.2f} K, by the formula {apparent_K(1.0, range_m):.2f} K")
 
 frame.picture(asked.out / "apparent_temperature.png", layer="mw.apparent_temperature", range=(275.0, 315.0))
 picture = asked.out / "apparent_temperature_chart.png"

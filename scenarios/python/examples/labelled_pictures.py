@@ -33,7 +33,7 @@ program = pathlib.Path(os.environ.get("PITVIPER_BUILD", home / "build")) / "pitv
 # %%
 SWEEP = f"""
 sweep: labelled_pictures
-scenario: {home / "scenarios/jet_and_sky.yaml"}
+scenario: {json.dumps(str(home / "scenarios/jet_and_sky.yaml"))}
 design: latin_hypercube
 samples: {asked.samples}
 vary:
