@@ -142,6 +142,7 @@ py::list camerasOf(const OpenScene& scene) {
     py::dict one, layers;
     for (const ChannelOutput& o : c.outputs) layers[py::str(o.layer())] = o.unit;
     one["name"] = c.name, one["width"] = c.pinhole.width, one["height"] = c.pinhole.height, one["layers"] = layers;
+    one["focal_px"] = c.pinhole.focalLength_m / c.pinhole.pitchX_m;
     all.append(one);
   }
   return all;

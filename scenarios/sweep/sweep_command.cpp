@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "scenarios/commands/child_run.hpp"
+#include "scenarios/commands/process.hpp"
 #include "scenarios/commands/progress.hpp"
 #include "scenarios/commands/scenario_wish.hpp"
 #include "scenarios/sweep/sample_drawer.hpp"
@@ -132,6 +133,10 @@ int draw(const SweepWish& w, const Sweep& sweep, const std::filesystem::path& fi
   for (const Value& sink : sweep.sinks.items) readSink(sink, sim);  // its mistakes, before hours of drawing
   SweepStore store(file, identityOf(sweep, sim));
   const std::vector<const Sample*> missing = missingSamples(sweep, store, part);
+  if (!sim.limits.any() && missing.size() > 1)
+    tell(
+        "note: the scenario has no 'limits', so that each sample has a plan of its own; write 'limits: {range: [500 m, 6 km], temperature: [250 K, 900 K]}' "
+        "under 'set:' for one plan of many");
   const std::vector<char> done = store.done();
   const auto before = static_cast<std::size_t>(std::count(done.begin(), done.end(), 1));
   const int workers = std::min<int>(w.workers > 0 ? w.workers : processors(), static_cast<int>(missing.size()));

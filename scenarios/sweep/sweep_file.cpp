@@ -51,7 +51,9 @@ const ParameterTable& sweepTable() {
             "sobol_indices has no constraints)",
             1, 256),
        list("measures", "what is taken of each picture", 1, 1024), list("sinks", "where frames go, as of scenarios", 1, 64),
-       withDefault(boolean("keep_frames", "whether each sample's frames are kept", &Sweep::keepsFrames), "false")}};
+       withDefault(
+           boolean("keep_frames", "each sample's frames stay in FOLDER/frames; with sinks, which are made of them, they do in any case", &Sweep::keepsFrames),
+           "false")}};
   return t;
 }
 

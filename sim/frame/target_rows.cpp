@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 
 #include "sim/parameters/print.hpp"
 
 namespace pitviper {
 namespace {
 
-const std::string kTarget = "target.";
+const std::string kTarget = "target.", kUnit = "target_unit.";
 
 }  // namespace
 
@@ -32,9 +33,14 @@ void finishTargets(Frame& frame, const CountMarks& marks) {
     for (const TargetRow::Channel& c : t.channels)
       frame.attributes.push_back({name + c.channel, std::vector<double>{c.own, c.total, c.contrast, c.signalToNoise, static_cast<double>(c.saturated)}});
   }
+  if (!frame.targets.empty())
+    for (const TargetRow::Channel& c : frame.targets.front().channels) frame.attributes.push_back({kUnit + c.channel, c.unit});
 }
 
 void restoreTargets(Frame& frame) {
+  std::map<std::string, std::string> units;
+  for (const Attribute& a : frame.attributes)
+    if (const auto* unit = std::get_if<std::string>(&a.value); unit && a.name.starts_with(kUnit)) units[a.name.substr(kUnit.size())] = *unit;
   const auto numbers = [&](const Attribute& a, std::size_t count) {
     const auto values = numbersOf(a);
     return values && values->size() == count ? *values : std::vector<double>();
@@ -62,7 +68,7 @@ void restoreTargets(Frame& frame) {
       TargetRow& t = rowNamed(name);
       t.range_m = v[0], t.rangeRate_m_s = v[1], t.sightRight_rad_s = v[2], t.sightUp_rad_s = v[3], t.visible = v[4];
     } else if (const auto v = numbers(a, 5); !v.empty()) {
-      rowNamed(name).channels.push_back({what, "", v[0], v[1], v[2], v[3], static_cast<int>(v[4])});
+      rowNamed(name).channels.push_back({what, units[what], v[0], v[1], v[2], v[3], static_cast<int>(v[4])});
     }
   }
 }

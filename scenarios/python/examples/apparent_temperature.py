@@ -16,7 +16,6 @@ options.add_argument("--out", type=pathlib.Path, default=".", metavar="FOLDER", 
 asked, _ = options.parse_known_args()
 asked.out.mkdir(parents=True, exist_ok=True)
 
-home = pathlib.Path(pitviper.__file__).parents[3]
 BAND = (3.7, 4.8)  # um
 SKIN_K, AROUND_K = 308.0, 280.0
 
@@ -41,7 +40,7 @@ print(f"a table of {len(nodes)} entries: at most {np.max(np.abs(looked_up_K - te
 
 # %%
 keys = {"cameras.tracker.channels.mw.output": "apparent_temperature", "cameras.tracker.truth": ["temperature", "range"]}
-scene = pitviper.Scene.load(home / "scenarios/jet_and_sky.yaml", set=keys)
+scene = pitviper.Scene.load(pitviper.home / "scenarios/jet_and_sky.yaml", set=keys)
 wavelengths_um = np.linspace(*BAND, 400)
 eye, jet = (np.array(scene.world(1.0)[kind][name]["position_m"]) for kind, name in (("cameras", "tracker"), ("entities", "jet")))
 ahead = (jet - eye) / np.linalg.norm(jet - eye)

@@ -19,12 +19,10 @@ options.add_argument("--frames", type=int, default=100, metavar="N", help="to st
 asked, _ = options.parse_known_args()
 asked.out.mkdir(parents=True, exist_ok=True)
 
-home = pathlib.Path(pitviper.__file__).parents[3]
-scene = pitviper.Scene.load(home / "scenarios/track.yaml")
+scene = pitviper.Scene.load(pitviper.home / "scenarios/track.yaml")
 
 # %% [markdown]
 # ## The tracker
-
 
 # %%
 def centroid_off(counts: np.ndarray) -> np.ndarray:
@@ -50,7 +48,6 @@ class Tracker:
         right, down = np.degrees(np.arctan((off + self.drift) / self.focal_px))
         self.heading += right / math.cos(math.radians(self.pitch))
         self.pitch -= down
-
 
 # %% [markdown]
 # ## The loop

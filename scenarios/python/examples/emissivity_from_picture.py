@@ -58,7 +58,6 @@ def draw(scene: pitviper.Scene, emissivity: float, temperature_K: float) -> pitv
     scene.command("temperature", entity="ball", value=f"{temperature_K} K")
     return scene.render()
 
-
 # %% [markdown]
 # ## The picture that is given
 # As apparent temperatures, which the detector's noise is in; `snr` says how much of it.

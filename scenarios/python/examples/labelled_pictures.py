@@ -6,7 +6,6 @@
 # %%
 import argparse
 import json
-import os
 import pathlib
 import struct
 import subprocess
@@ -23,9 +22,6 @@ options.add_argument("--samples", type=int, default=200, metavar="N", help="pict
 asked, _ = options.parse_known_args()
 asked.out.mkdir(parents=True, exist_ok=True)
 
-home = pathlib.Path(pitviper.__file__).parents[3]
-program = pathlib.Path(os.environ.get("PITVIPER_BUILD", home / "build")) / "pitviper"
-
 # %% [markdown]
 # ## The sweep
 # `vary` says what is drawn by chance, `set` which keys of the scenario follow it. Within `limits` one plan of the wavelengths holds for all pictures.
@@ -33,7 +29,7 @@ program = pathlib.Path(os.environ.get("PITVIPER_BUILD", home / "build")) / "pitv
 # %%
 SWEEP = f"""
 sweep: labelled_pictures
-scenario: {json.dumps(str(home / "scenarios/jet_and_sky.yaml"))}
+scenario: {json.dumps(str(pitviper.home / "scenarios/jet_and_sky.yaml"))}
 design: latin_hypercube
 samples: {asked.samples}
 vary:
@@ -67,11 +63,10 @@ sinks: [{{sink: coco, categories: {{jet: aircraft}}}}, {{sink: hdf5}}]
 data = asked.out / f"labelled_pictures_{asked.samples}"
 sweep = data.with_suffix(".yaml")
 sweep.write_text(SWEEP)
-print(subprocess.run([program, "sweep", sweep, "--out", data], check=True, stdout=subprocess.PIPE, text=True).stdout.strip())
+print(subprocess.run([pitviper.program, "sweep", sweep, "--out", data], check=True, stdout=subprocess.PIPE, text=True).stdout.strip())
 
 # %% [markdown]
 # ## Masks
-
 
 # %%
 def mask_of(counts: str, height: int, width: int) -> np.ndarray:
@@ -104,7 +99,6 @@ print(f"{len(numbers)} pictures, {len(areas)} masks of {min(areas)} to {max(area
 
 # %% [markdown]
 # ## A sheet
-
 
 # %%
 def write_png(file: pathlib.Path, rgb: np.ndarray) -> None:

@@ -19,7 +19,6 @@ options.add_argument("--accuracy", default="0.1 %", metavar="PERCENT", help="of 
 asked, _ = options.parse_known_args()
 asked.out.mkdir(parents=True, exist_ok=True)
 
-home = pathlib.Path(pitviper.__file__).parents[3]
 WANTED_SNR = 5.0
 
 # %% [markdown]
@@ -46,13 +45,12 @@ def snr_at(ranges_m: np.ndarray, visibility: str) -> np.ndarray:
     """Signal to noise at each range, of its shape."""
     air = {"library": "clear_us76", "visibility": visibility}
     keys = {"cameras": [camera], "atmosphere": air, "limits": {"range": ["1.5 km", "35 km"]}, "accuracy": asked.accuracy}
-    with pitviper.Scene.load(home / "scenarios/jet_and_sky.yaml", set=keys) as scene:
+    with pitviper.Scene.load(pitviper.home / "scenarios/jet_and_sky.yaml", set=keys) as scene:
         snr = []
         for range_m in ranges_m:
             scene.command("move", entity="jet", position=["0 m", f"{range_m} m", "600 m"], heading="180 deg")
             snr.append(scene.render().targets[0]["channels"]["mw"]["snr"])
         return np.array(snr)
-
 
 # %% [markdown]
 # ## Ranges at which it is still seen

@@ -14,11 +14,17 @@ import pathlib as _pathlib
 import sys as _sys
 
 
+home = _pathlib.Path(__file__).resolve().parents[3]
+"""The checkout: `home / "scenarios"` has the scenarios."""
+_build = _pathlib.Path(_os.environ.get("PITVIPER_BUILD") or home / "build")
+program = _build / "pitviper"
+"""The program that was built with the module, for commands: `subprocess.run([pitviper.program, "sweep", ...])`."""
+
+
 def _load_extension():
     """The built module: in PITVIPER_BUILD, or the checkout's `build`."""
-    home = _pathlib.Path(__file__).resolve().parents[3]
     _os.environ.setdefault("PITVIPER_HOME", str(home))
-    build = _pathlib.Path(_os.environ.get("PITVIPER_BUILD") or home / "build")
+    build = _build
     _sys.path.insert(0, str(build))
     try:
         import _pitviper
@@ -67,8 +73,10 @@ __all__ = [
     "chart",
     "direction",
     "frames_in",
+    "home",
     "material",
     "planck",
     "planck_slope",
+    "program",
     "read_frame",
 ]

@@ -96,7 +96,7 @@ class Scene:
 
     @property
     def cameras(self) -> list[dict[str, Any]]:
-        """Of each camera name, width, height and layers {name: unit}."""
+        """Of each camera name, width, height, layers {name: unit} and focal_px, its focal length at first in pixels (angle = atan(pixels / focal_px))."""
         return self._held.cameras()
 
     @property
