@@ -3,8 +3,9 @@
 
     python3 tests/python/run.py [--xml FILE] [NAME ...]
 
-NAME: a file (test_physics), one of its classes (test_physics.Bands) or tests (test_physics.Bands.test_wien); without one all of test_*.py. The module is that of
-PITVIPER_BUILD, or of the checkout's `build`. PITVIPER_LONG=1 makes those long that look for leaks. Exit codes: 0 all passed, 1 some failed, 2 no such test.
+NAME: a file (test_physics), one of its classes (test_physics.Bands) or tests (test_physics.Bands.test_shapes); without one all of test_*.py. The module is
+that of PITVIPER_BUILD, or of the checkout's `build`. PITVIPER_LONG=1 makes those long that look for leaks. Exit codes: 0 all passed, 1 some failed, 2 no such
+test.
 """
 
 import argparse

@@ -1,9 +1,12 @@
 """Scenes from Python: values, memory, keys, commands, noise, threads, signals."""
 
+import functools
 import gc
 import os
 import random
 import signal
+import subprocess
+import sys
 import threading
 import time
 import tracemalloc
@@ -17,14 +20,25 @@ from pitviper import InputError, Scene
 import support
 from support import Folder, address, attributes_that_differ, bench, detector, layers_that_differ, run_program, same_bits, scenarios
 
-SMALL = {"cameras.seeker.film": {"width": 64, "height": 64, "pitch": "20 um"}}
-LIMITS = {"limits": {"range": ["500 m", "5 km"], "temperature": ["250 K", "900 K"]}, "accuracy": "1 %", "cameras.tracker.film": {"width": 160, "height": 120, "pitch": "15 um"}}
+SMALL = {"cameras.seeker.film": {"width": 64, "height": 64, "pitch": "20 um"}, "audit": 0}
+LIMITS = {
+    "limits": {"range": ["500 m", "5 km"], "temperature": ["250 K", "900 K"]},
+    "accuracy": "1 %",
+    "cameras.tracker.film": {"width": 80, "height": 60, "pitch": "15 um"},
+}
 JET = scenarios / "jet_and_sky.yaml"
 
 
 def cold():
     """Keys that no plan in a cache is made for, and whose plan takes seconds."""
     return {"entities.jet.temperature": f"{random.uniform(300, 320):.9f} K", "accuracy": "0.2 %"}
+
+
+@functools.lru_cache
+def jet_frame():
+    """Of the scenario as it is, at 0.2 s."""
+    with Scene.load(JET) as scene:
+        return scene.render(0.2)
 
 
 class Case(unittest.TestCase):
@@ -45,27 +59,42 @@ class Case(unittest.TestCase):
 class AgainstTheProgram(Case):
     """Bit for bit what `pitviper run` writes."""
 
-    def compare(self, scenario, sets, frames):
+    def same(self, drawn, read):
+        self.same_frame(drawn, read)
+        self.assertEqual((drawn.units, drawn.camera, drawn.number, drawn.shape), (read.units, read.camera, read.number, read.shape))
+        self.assertEqual(drawn.time, read.time)
+        self.assertEqual(attributes_that_differ(drawn.attributes, read.attributes), [])
+
+    def compare(self, scenario, sets, frames, read=None):
         first, last = frames
-        read = run_program(self.folder.path, scenario, sets, f"{first}:{last}")
+        read = read or run_program(self.folder.path, scenario, sets, f"{first}:{last}")
         self.assertEqual(len(read), last - first + 1)
         scene = self.scene(scenario, set=sets)
         drawn = [scene.render(scene.times[k]) for k in range(first, last + 1)]
         for d, r in zip(drawn, read):
-            self.same_frame(d, r)
-            self.assertEqual((d.units, d.camera, d.number, d.shape), (r.units, r.camera, r.number, r.shape))
-            self.assertEqual(d.time, r.time)
-            self.assertEqual(attributes_that_differ(d.attributes, r.attributes), [])
+            self.same(d, r)
         return scene, drawn, read
 
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        cls.written = run_program(cls.folder.path, scenarios / "first_light.yaml", SMALL, "24")[0]
+        with Scene.load(scenarios / "first_light.yaml", set=SMALL) as scene:
+            cls.drawn = scene.render(scene.times[24])
+
     def test_first_light_in_three_bands_with_a_flare(self):
-        _, drawn, _ = self.compare(scenarios / "first_light.yaml", SMALL, (24, 24))
-        self.assertEqual(set(drawn[0]) - {"mw.flux"}, {f"{c}.radiance" for c in ("mw", "lw", "vis")} | {f"truth.{t}" for t in "range entity part temperature".split()})
-        self.assertGreater(drawn[0]["vis.radiance"].max(), 10 * np.median(drawn[0]["vis.radiance"]))  # the flare burns
+        self.same(self.drawn, self.written)
+        radiances, truth = {f"{c}.radiance" for c in ("mw", "lw", "vis")}, {f"truth.{t}" for t in ("range", "entity", "part", "temperature")}
+        self.assertEqual(set(self.drawn), radiances | truth | {"mw.flux"})
+        self.assertGreater(self.drawn["vis.radiance"].max(), 10 * np.median(self.drawn["vis.radiance"]))  # the flare burns
 
     def test_jet_and_sky_three_frames_in_order(self):
-        scene, drawn, _ = self.compare(JET, None, (0, 2))
+        scene, drawn, read = self.compare(JET, None, (0, 2))
         self.assertFalse(same_bits(drawn[0]["mw.radiance"], drawn[2]["mw.radiance"]))
+        # The program audits some of its first frame.
+        audited = scene.render(scene.times[0], audit=True)
+        self.assertEqual(attributes_that_differ(audited.attributes, read[0].attributes, audit=True), [])
+        self.assertIn("pitviper.audit.mw.largest", audited.attributes)
         scene.reset()
         again = [scene.next() for _ in range(3)]
         self.assertEqual([f.number for f in again], [0, 1, 2])
@@ -73,21 +102,23 @@ class AgainstTheProgram(Case):
             self.same_frame(a, d)
 
     def test_insb_camera_with_noise_at_its_first_frame_and_at_frame_5(self):
-        scene, (first,), _ = self.compare(scenarios / "insb_camera.yaml", None, (0, 0))
-        fifth = scene.render(scene.times[5])
-        self.same_frame(fifth, run_program(self.folder.path, scenarios / "insb_camera.yaml", None, "5")[0])
+        film = {"cameras.seeker.film": {"width": 160, "height": 128, "pitch": "15 um"}, "audit": 0}
+        read = run_program(self.folder.path, scenarios / "insb_camera.yaml", film, "0:5")
+        scene, (first,), _ = self.compare(scenarios / "insb_camera.yaml", film, (0, 0), read[:1])
+        self.same_frame(scene.render(scene.times[5]), read[5])
         self.assertEqual(first.units, {"mw.counts": "count", "mw.apparent_temperature": "K", "mw.radiance": "W/(m2 sr)"})
+        self.assertTrue(layers_that_differ(read[0], read[5]))
         # In any order: what it was before leaves nothing.
         self.same_frame(scene.render(0.0), first)
 
     def test_track_within_limits(self):
-        self.compare(scenarios / "track.yaml", None, (0, 2))
+        self.compare(scenarios / "track.yaml", {"audit": 0}, (0, 2))
 
     def test_track_on_a_gimbal(self):
         gimbal = {"driver": "centroid", "rate": "30 deg/s", "lag": "20 ms", "azimuth": "40 deg", "elevation": ["-40 deg", "40 deg"]}
         gimbal["tracker"] = {"channel": "mw", "threshold": 6, "gate": [60, 60]}
         gimbal["jitter"] = {"rms": "200 urad", "corner": "30 Hz"}
-        sets = {"cameras.tracker.look_at": "jet", "cameras.tracker.gimbal": gimbal}
+        sets = {"audit": 0, "cameras.tracker.look_at": "jet", "cameras.tracker.gimbal": gimbal}
         scene, drawn, read = self.compare(scenarios / "track.yaml", sets, (0, 2))
         self.assertEqual(drawn[2].attributes["pitviper.gimbal.driver"], "centroid")
         # Out of order it begins as a run of that frame would.
@@ -102,16 +133,20 @@ class AgainstTheProgram(Case):
 
     def test_attributes_have_one_type(self):
         # What is read from a file is used as what was drawn.
-        _, (drawn,), (read,) = self.compare(JET, None, (0, 0))
-        self.assertEqual({n: type(v) for n, v in drawn.attributes.items()}, {n: type(read.attributes.get(n)) for n in drawn.attributes})
+        drawn, read = self.drawn.attributes, self.written.attributes
+        self.assertEqual([(n, type(v), type(read[n])) for n, v in drawn.items() if type(v) is not type(read[n])], [])
 
-    def test_layers_have_one_order(self):
-        # Channels first, then truth.
-        read = run_program(self.folder.path, scenarios / "first_light.yaml", SMALL, "0")[0]
-        drawn = self.scene(scenarios / "first_light.yaml", set=SMALL).render()
-        for frame in (drawn, read):
+    def test_channels_come_first(self):
+        for frame in (self.drawn, self.written):
             kinds = [name.startswith("truth.") for name in frame]
             self.assertEqual(kinds, sorted(kinds))
+
+    def test_predicted_errors_are_of_their_layers(self):
+        # Each is its channel's, as the header says.
+        channels = {name: self.drawn.attributes[f"pitviper.predicted_error.{name}"] for name in ("mw", "lw", "vis")}
+        expected = {layer: channels[layer.split(".")[0]] for layer in self.drawn if not layer.startswith("truth.")}
+        self.assertEqual(self.drawn.predicted_error, expected)
+        self.assertEqual(self.written.predicted_error, {})
 
     def test_a_saved_frame_is_the_frame(self):
         frame = self.scene(detector()).render()
@@ -256,21 +291,43 @@ class Keys(Case):
         scene["entities.jet.temperature"] = "37 degC"
         self.assertEqual(scene["entities.jet.temperature"], "37 degC")
         self.assertAlmostEqual(scene.world()["entities"]["jet"]["temperatures_K"][0], 310.15, delta=1e-9)
-        scene["cameras.tracker.position"] = [0, "1 m", 2] if False else ["0 m", "1 m", "0.002 km"]
+        scene["cameras.tracker.position"] = ["0 m", "1 m", "0.002 km"]
         self.assertEqual(scene.world()["cameras"]["tracker"]["position_m"], (0.0, 1.0, 2.0))
         scene["cameras.tracker.samples"] = np.int32(2)
         self.assertEqual(scene["cameras.tracker.samples"], 2)
-        scene["cameras.tracker.samples"] = np.array(1)
-        self.assertEqual(scene["cameras.tracker.samples"], 1)
-        scene["cameras.tracker.motion_blur"] = np.bool_(True)
-        self.assertIs(scene["cameras.tracker.motion_blur"], True)
-        self.assertEqual(scene.scenario()["cameras"][0]["motion_blur"], True)
+        self.assertEqual(scene.scenario()["cameras"][0]["samples"], 2)
+
+    def test_values_of_numpy(self):
+        scene = self.scene(bench())
+        for key, value, plain in (
+            ("cameras.eye.samples", np.int32(2), 2),
+            ("cameras.eye.samples", np.array(3), 3),
+            ("cameras.eye.motion_blur", np.bool_(True), True),
+            ("cameras.eye.optics", np.float32(0.5), 0.5),
+            ("entities.plate.position", np.array(["0 m", "20 m", "1 m"]), ["0 m", "20 m", "1 m"]),
+            ("name", np.str_("other"), "other"),
+        ):
+            with self.subTest(key, value=value):
+                scene[key] = value
+                self.assertEqual((scene[key], type(scene[key])), (plain, type(plain)))
 
     def test_numbers_keep_all_their_digits(self):
         scene = self.scene(bench())
         for number in (0.1 + 0.2, 1 / 3, np.float64(2 / 7)):
             scene["cameras.eye.optics"] = number
             self.assertEqual(scene["cameras.eye.optics"], float(number))
+        for number in (0, 7, 10**15 + 1, 2**53 - 1):
+            scene["seed"] = number
+            self.assertEqual((scene["seed"], type(scene["seed"])), (number, int))
+
+    def test_what_stands_there_may_be_written_back(self):
+        scene = self.scene(JET, set=LIMITS)
+        before = scene.render(0.2)
+        for key, value in scene.scenario().items():
+            scene[key] = value
+            self.assertEqual(scene[key], value)
+        self.same_frame(scene.render(0.2), before)
+        self.same_frame(self.scene(scene.scenario(), base=scenarios).render(0.2), before)
 
     def test_a_camera_of_the_bench(self):
         scene = self.scene(bench())
@@ -343,16 +400,25 @@ class Keys(Case):
         scene = self.scene(JET, set=LIMITS)
         before = scene.render(0.2)
         scene[key] = value
-        with self.subTest("planned"):
-            self.assertTrue(scene.planned())
-        calls = []
-        frame = scene.render(0.2, progress=calls.append)
+        frame = scene.render(0.2)
+        self.assertTrue(scene.planned())
         self.assertEqual(frame.attributes["pitviper.plan"], before.attributes["pitviper.plan"])
         self.assertFalse(frame.outside_limits)
         self.assertFalse(same_bits(frame["mw.radiance"], before["mw.radiance"]))
         fresh = self.scene(JET, set={**LIMITS, key: value}).render(0.2)
         np.testing.assert_allclose(frame["mw.radiance"], fresh["mw.radiance"], rtol=0.01)
-        self.assertEqual({n: v for n, v in frame.attributes.items() if "sha256" in n or "content" in n}, {n: v for n, v in fresh.attributes.items() if "sha256" in n or "content" in n})
+        for name in ("pitviper.scenario_sha256", "pitviper.scenario_content"):
+            self.assertEqual(frame.attributes[name], fresh.attributes[name])
+
+    def test_what_is_within_limits_is_planned(self):
+        scene = self.scene(JET, set=LIMITS)
+        scene.render(0.2)
+        # Another each time, which no cache has a plan for.
+        kelvin, metres = random.uniform(320, 340), random.uniform(0, 90)
+        for key, value in (("entities.jet.temperature", f"{kelvin:.9f} K"), ("cameras.tracker.position", ["0 m", f"{metres:.9f} m", "5 m"])):
+            with self.subTest(key):
+                scene[key] = value
+                self.assertTrue(scene.planned())
 
     def test_a_temperature_within_limits_needs_no_plan(self):
         self.within_limits("entities.jet.temperature", "340 K")
@@ -384,34 +450,48 @@ class Keys(Case):
 
     def test_a_command_beyond_limits_says_so(self):
         scene = self.scene(JET, set=LIMITS)
-        scene.command("temperature", entity="jet", value="1200 K", time=0.1)
         self.assertFalse(scene.render(0.08).outside_limits)
+        scene.command("temperature", entity="jet", value="1200 K", time=0.1)
         self.assertTrue(scene.render(0.1).outside_limits)
 
+    def not_drawn_as_before(self, scenario, sets, key, value, looks_other=True):
+        scene = self.scene(scenario, set=sets)
+        before = scene.render(0.2)
+        scene[key] = value
+        frame = scene.render(0.2)
+        self.same_frame(frame, self.scene(scenario, set={**sets, key: value}).render(0.2))
+        self.assertEqual(bool(layers_that_differ(frame, before)), looks_other)
+
     def test_other_keys_are_not_drawn_as_before(self):
+        for key, value, looks_other in (
+            ("cameras.tracker.motion_blur", True, True),
+            ("cameras.tracker.film", {"width": 80, "height": 60, "pitch": "12 um"}, False),  # of the same field of view
+            ("atmosphere", "hazy_us76", True),
+        ):
+            with self.subTest(key):
+                self.not_drawn_as_before(JET, LIMITS, key, value, looks_other)
+
+    def test_other_keys_of_the_bench_are_not_drawn_as_before(self):
+        limits = {"limits": {"range": ["5 m", "50 m"], "temperature": ["250 K", "900 K"]}, "accuracy": "1 %"}
         for key, value in (
-            ("cameras.tracker.motion_blur", True),
-            ("cameras.tracker.film", {"width": 160, "height": 120, "pitch": "12 um"}),
-            ("cameras.tracker.film.width", 80),
-            ("cameras.tracker.samples", 2),
-            ("cameras.tracker.channels.mw.response", {"band": ["3.6 um", "4.2 um"]}),
-            ("cameras.tracker.channels.mw.output", ["radiance", "flux"]),
-            ("cameras.tracker.exposure", "20 ms"),
-            ("cameras.tracker.optics", 0.5),
-            ("cameras.tracker.truth", ["range"]),
-            ("cameras.tracker.look_at", ["0 m", "1.4 km", "600 m"]),
-            ("entities.jet.material", "concrete"),
-            ("entities.jet.shape", {"model": "sphere", "radius": "6 m"}),
-            ("sun.elevation", "20 deg"),
-            ("atmosphere", "hazy_us76"),
+            ("cameras.eye.film.width", 40),
+            ("cameras.eye.film.pitch", "15 um"),
+            ("cameras.eye.samples", 3),
+            ("cameras.eye.channels.mw.response", {"band": ["3.6 um", "4.2 um"]}),
+            ("cameras.eye.channels.mw.output", ["radiance", "flux"]),
+            ("cameras.eye.aperture", "5 mm"),
+            ("cameras.eye.exposure", "20 ms"),
+            ("cameras.eye.optics", 0.5),
+            ("cameras.eye.truth", ["range"]),
+            ("entities.plate.material", "concrete"),
+            ("entities.plate.shape", {"model": "sphere", "radius": "20 cm"}),
+            ("background.temperature", "280 K"),
             ("seed", 9),
         ):
             with self.subTest(key):
-                scene = self.scene(JET, set=LIMITS)
-                scene.render(0.2)
-                scene[key] = value
-                fresh = self.scene(JET, set={**LIMITS, key: value})
-                self.same_frame(scene.render(0.2), fresh.render(0.2))
+                scenario = detector()
+                scenario["entities"][0].update(shape={"model": "plate", "width": "6 m", "height": "6 m"})
+                self.not_drawn_as_before(scenario, limits, key, value)
 
     def test_a_detectors_keys(self):
         for key, value in (("read_noise", 0), ("offset", 100), ("gain", 0.005), ("prnu", 0.05)):
@@ -466,11 +546,11 @@ class Loading(Case):
 
     def test_relative_files(self):
         (self.folder.path / "part.yaml").write_text("background: {temperature: 260 K}\n")
-        text = "include: part.yaml\nname: x\ntime: {rate: 25 Hz, frames: 2}\ncameras: []\n"
-        scene = self.scene(text, base=self.folder.path)
+        scenario = {"include": "part.yaml", **{k: v for k, v in bench().items() if k != "background"}}
+        scene = self.scene(scenario, base=self.folder.path)
         self.assertEqual(scene["background.temperature"], "260 K")
         with self.assertRaises(InputError):
-            Scene.load(text, base=self.folder.path / "elsewhere")
+            Scene.load(scenario, base=self.folder.path / "elsewhere")
 
     def test_mistakes(self):
         for wrong in (3, None, 2.5, object(), b"name: x\n", ["a"]):
@@ -490,47 +570,70 @@ class Loading(Case):
             Scene.load({"name": circle})
 
     def test_a_scene_without_cameras(self):
-        scene = self.scene("name: x\ntime: {rate: 25 Hz, frames: 2}\nbackground: {temperature: 260 K}\ncameras: []\n")
+        scene = self.scene(scenarios / "lamp_on_plane.yaml")
         self.assertEqual(scene.cameras, [])
+        self.assertEqual(scene.world()["lights"]["lamp"]["position_m"], (0.0, 0.0, 5.0))
         for call in (scene.render, scene.plan, scene.planned, lambda: scene.terms(0, 0)):
             with self.assertRaises(InputError):
                 call()
 
 
 class Commands(Case):
-    def same_as(self, scenario, sets, command, at, frames):
-        """Commanded, and by a scenario with the same entry under `commands`."""
+    def same_as(self, scenario, command, at, frames):
+        """As it goes along: commanded when it is time, and by a scenario with the same entry under `commands`. Says in which frames it shows."""
         name, keys = command
-        scene = self.scene(scenario, set=sets)
-        scene.command(name, time=at, **keys)
-        written = self.scene(scenario, set={**sets, "commands": [{"command": name, "at": f"{at!r} s", **keys}]})
-        plain = self.scene(scenario, set=sets)
-        changed = []
+        live, plain = self.scene(scenario), self.scene(scenario)
+        written = self.scene({**scenario, "commands": [{"command": name, "at": f"{at!r} s", **keys}]})
+        given, changed = False, []
         for k in frames:
-            frame = scene.render(scene.times[k])
-            self.same_frame(frame, written.render(scene.times[k]))
-            changed.append(bool(layers_that_differ(frame, plain.render(scene.times[k]))))
+            if live.times[k] >= at and not given:
+                live.command(name, time=at, **keys)
+                given = True
+            frame = live.render(live.times[k])
+            self.same_frame(frame, written.render(live.times[k]))
+            changed.append(bool(layers_that_differ(frame, plain.render(live.times[k]))))
         return changed
 
     def test_each_is_as_a_scenarios(self):
-        flare = {**SMALL, **{"cameras.seeker.channels": [{"name": "mw", "response": {"band": ["3.6 um", "4.9 um"]}}], "cameras.seeker.truth": []}}
-        body = detector()
-        for what, scenario, sets, command in (
-            ("temperature", body, {}, ("temperature", {"entity": "plate", "value": "320 K"})),
-            ("move", body, {}, ("move", {"entity": "plate", "position": ["0 m", "40 m", "3 m"], "heading": "150 deg"})),
-            ("look", body, {}, ("look", {"camera": "eye", "heading": "30 deg", "field_of_view": "5 deg"})),
-            ("gain", body, {}, ("gain", {"camera": "eye", "factor": 1.5})),
-            ("light", scenarios / "first_light.yaml", flare, ("light", {"light": "flare", "level": 2.5})),
+        lit = detector()
+        lit["entities"][0]["material"] = "concrete"
+        lit["lights"] = [{"name": "lamp", "intensity": "40 W/(sr um)", "position": ["0 m", "10 m", "8 m"], "level": 0.5}]
+        for name, keys in (
+            ("temperature", {"entity": "plate", "value": "320 K"}),
+            ("move", {"entity": "plate", "position": ["0 m", "40 m", "3 m"], "heading": "150 deg"}),
+            ("look", {"camera": "eye", "heading": "30 deg", "field_of_view": "5 deg"}),
+            ("gain", {"camera": "eye", "factor": 1.5}),
+            ("light", {"light": "lamp", "level": 2.5}),
         ):
-            with self.subTest(what):
-                step = 1 / 30 if what == "light" else 0.04
-                changed = self.same_as(scenario, sets, command, 25 * step, (24, 25, 26))
-                self.assertEqual(changed, [False, True, True])
+            with self.subTest(name):
+                self.assertEqual(self.same_as(lit, (name, keys), 1.0, (24, 25, 26)), [False, True, True])
 
-    def test_a_command_between_frames_holds_from_then_on(self):
-        for at in (0.405, 0.41, 0.42, 0.43, 0.439):
+    def test_a_command_between_frames_shows_in_the_next(self):
+        for at in (0.4 + 1e-5, 0.405, 0.41, 0.42, 0.43, 0.439):
             with self.subTest(at=at):
-                self.same_as(bench(), {}, ("temperature", {"entity": "plate", "value": "320 K"}), at, (10, 11, 12))
+                self.assertEqual(self.same_as(bench(), ("temperature", {"entity": "plate", "value": "320 K"}), at, (10, 11, 12)), [False, True, True])
+
+    def test_a_command_holds_from_its_time_on_and_not_before(self):
+        # Given ahead, and looked at from before: as a scenario's.
+        for at in (1.0, 0.405, 0.43):
+            with self.subTest(at=at):
+                command = {"command": "temperature", "entity": "plate", "value": "320 K"}
+                scene = self.scene(bench())
+                scene.command(**command, time=at)
+                written = self.scene({**bench(), "commands": [{**command, "at": f"{at!r} s"}]})
+                for k in (9, 10, 11, 24, 25, 26):
+                    with self.subTest(k=k):
+                        self.assertEqual(scene.world(scene.times[k])["entities"], written.world(scene.times[k])["entities"])
+                        self.same_frame(scene.render(scene.times[k]), written.render(scene.times[k]))
+
+    def test_its_time_by_the_scenarios_word(self):
+        # `at` is one of the words: it holds from then on, or it is refused.
+        scene = self.scene(bench())
+        try:
+            scene.command("temperature", entity="plate", value="320 K", at="1 s")
+        except (InputError, TypeError):
+            return
+        self.assertEqual([scene.world(t)["entities"]["plate"]["temperatures_K"] for t in (0.5, 1.0)], [[300.0], [320.0]])
 
     def test_now_unless_a_time_is_given(self):
         scene = self.scene(bench())
@@ -566,7 +669,8 @@ class Commands(Case):
         frame = scene.render(0.4)
         self.assertEqual(frame.shape, (32, 20))
         self.assertAlmostEqual(frame["mw.radiance"].mean() / pitviper.band_radiance(320.0, (3.6, 4.9)), 1.0, delta=1e-3)
-        self.assertEqual(scene.world(0.1)["entities"]["plate"]["temperatures_K"], [300.0])
+        scene["cameras.eye.film.width"] = 48
+        self.same_frame(scene.render(0.4), self.scene({**bench(), "entities": [{**bench()["entities"][0], "temperature": "320 K"}]}).render(0.4))
 
     def test_a_key_that_a_command_needs(self):
         scene = self.scene(bench())
@@ -618,7 +722,7 @@ class Commands(Case):
 
 class Drafts(Case):
     def test_a_draft_and_then_as_asked(self):
-        scene = self.scene(JET, set=cold())
+        scene = self.scene(JET, set={**cold(), "accuracy": "1 %"})
         self.assertFalse(scene.planned())
         draft = scene.render(0.2, draft=True)
         self.assertTrue(draft.is_draft)
@@ -638,16 +742,13 @@ class Drafts(Case):
         self.assertTrue(scene.render(0.2, draft=True).is_draft)
         scene.close()
         self.assertTrue(scene.closed)
-        scene = Scene.load(JET, set=cold())
-        scene.render(0.2, draft=True)
-        del scene
 
     def test_keys_changed_while_its_plan_is_made(self):
         scene = self.scene(JET, set=cold())
         scene.render(0.2, draft=True)
         scene["accuracy"] = "1 %"
         scene["entities.jet.temperature"] = "308 K"
-        self.same_frame(scene.render(0.2), self.scene(JET).render(0.2))
+        self.same_frame(scene.render(0.2), jet_frame())
 
 
 class Noise(Case):
@@ -741,19 +842,12 @@ class Reference(Case):
         self.assertIn("camera tracker: 320x240 pixels, 1 layer", self.jet.check())
         self.assertIn("jet", self.jet.check())
 
-    def test_predicted_errors_are_of_their_layers(self):
-        # Each is its channel's, as the header says.
-        scene = self.scene(scenarios / "first_light.yaml", set=SMALL)
-        frame = scene.render()
-        channels = {name: frame.attributes[f"pitviper.predicted_error.{name}"] for name in ("mw", "lw", "vis")}
-        expected = {layer: channels[layer.split(".")[0]] for layer in frame if not layer.startswith("truth.")}
-        self.assertEqual(frame.predicted_error, expected)
-
     def test_targets(self):
         scene = self.scene(JET, set={"cameras.tracker.truth": ["targets"]})
         (jet,) = scene.render(0.2).targets
         self.assertEqual((jet["name"], jet["visible"]), ("jet", 1.0))
-        self.assertAlmostEqual(jet["range_m"], np.linalg.norm(np.subtract(scene.world(0.2)["entities"]["jet"]["position_m"], (0, 0, 5))), delta=1e-6)
+        origin = np.linalg.norm(np.subtract(scene.world(0.2)["entities"]["jet"]["position_m"], (0, 0, 5)))
+        self.assertAlmostEqual(jet["range_m"], origin, delta=8.0)  # to its middle, which is within half its length of its origin
         left, top, right, bottom = jet["box"]
         self.assertTrue(left < jet["column"] < right and top < jet["row"] < bottom)
         self.assertGreater(jet["channels"]["mw"]["contrast"], 0.0)
@@ -770,9 +864,10 @@ class Reference(Case):
         for camera in ("other", ""):
             with self.subTest(camera), self.assertRaises(InputError):
                 self.jet.render(camera=camera)
-        for time_s in (float("nan"), float("inf"), -float("inf"), np.nan):
+        for time_s in (float("nan"), float("inf"), -float("inf"), np.nan, 1e12, -1e12, 1e300):
             with self.subTest(time_s), self.assertRaises(InputError):
                 self.jet.render(time_s)
+        for time_s in (float("nan"), float("inf")):
             with self.subTest(time_s), self.assertRaises(InputError):
                 self.jet.world(time_s)
         for wrong in (dict(camera=3), dict(time="x"), dict(time=[1.0, 2.0]), dict(draft="x", time=None, camera=[])):
@@ -784,6 +879,14 @@ class Reference(Case):
 
 
 class Life(Case):
+    def test_next_goes_through_the_scenarios_times(self):
+        scene = self.scene(bench())
+        frames = [scene.next() for _ in scene.times]
+        self.assertEqual([f.number for f in frames], list(range(50)))
+        self.assertEqual([f.time for f in frames], scene.times.tolist())
+        scene.render(1.0)
+        self.assertEqual((scene.now, scene.next().number), (1.0, 26))
+
     def test_several_scenes_side_by_side(self):
         alone = []
         for kelvin in (300, 320, 340):
@@ -842,7 +945,7 @@ class Life(Case):
         for k in range(many):
             with Scene.load(bench(16, 8)) as scene:
                 scene.render()
-                if k % 2:
+                if k % 4 == 0:
                     scene["entities.plate.temperature"] = "310 K"
                     scene.render()
             if k == 49:
@@ -856,15 +959,42 @@ class Life(Case):
 
     def test_many_frames_leave_nothing(self):
         scene = self.scene(detector())
-        for k in range(300):
+        for k in range(200):
             frame = scene.render(0.04 * (k % 50), noise=k)
             frame.attributes, frame.targets, frame["mw.counts"]  # noqa: B018
             scene["entities.plate.temperature"] = f"{300 + k % 3} K"
-            if k == 99:
+            if k == 79:
                 gc.collect()
                 resident = support.resident_kB()
         gc.collect()
         self.assertLess(support.resident_kB() - resident, 20000)
+
+
+# Keys and cameras may be read at any time: what is read is what was or what is, and no mixture.
+READS_WHILE_IT_CHANGES = f"""
+import sys
+sys.path[:0] = {sys.path!r}
+import pitviper, support, threading
+scene = pitviper.Scene.load(support.bench())
+ends = threading.Event()
+
+def read():
+    while not ends.is_set():
+        film, told, whole = scene["cameras.eye.film"], scene.cameras[0], scene.scenario()
+        if film["width"] not in (20, 48) or told["width"] not in (20, 48) or len(whole["cameras"]) != 1:
+            print(film, told, whole)
+
+readers = [threading.Thread(target=read) for _ in range(2)]
+for r in readers:
+    r.start()
+try:
+    for k in range(400):
+        scene["cameras.eye.film.width"] = 20 if k % 2 else 48
+finally:
+    ends.set()
+    for r in readers:
+        r.join()
+"""
 
 
 class Threads(Case):
@@ -948,32 +1078,12 @@ class Threads(Case):
             self.same_frame(f, frames[0])
 
     def test_reading_while_another_changes(self):
-        # Keys and cameras may be read at any time; it ends, by no crash and in no mixture.
-        scene = self.scene(bench())
-        ends = threading.Event()
-        wrong = []
-
-        def read():
-            while not ends.is_set():
-                try:
-                    film, told = scene["cameras.eye.film"], scene.cameras[0]
-                    if film["width"] not in (20, 48) or told["width"] not in (20, 48) or len(scene.scenario()["cameras"]) != 1:
-                        wrong.append((film, told))
-                except InputError:
-                    pass
-
-        reader = threading.Thread(target=read)
-        reader.start()
-        try:
-            for k in range(300):
-                scene["cameras.eye.film.width"] = 20 if k % 2 else 48
-        finally:
-            ends.set()
-            reader.join()
-        self.assertEqual(wrong, [])
+        # In a process of its own, as it may end that.
+        told = subprocess.run([sys.executable, "-X", "faulthandler", "-c", READS_WHILE_IT_CHANGES], capture_output=True, text=True, check=False)
+        self.assertEqual((told.returncode, told.stdout, told.stderr), (0, "", ""))
 
     def test_others_run_while_it_draws(self):
-        scene = self.scene(bench(1600, 1200), set={"cameras.eye.samples": 4})
+        scene = self.scene(bench(800, 600), set={"cameras.eye.samples": 4})
         scene.render()
         ends = threading.Event()
         counted = [0]
@@ -1007,7 +1117,7 @@ class Interrupts(Case):
             scene.render(camera="other")
         scene["accuracy"] = "1 %"
         scene["entities.jet.temperature"] = "308 K"
-        self.same_frame(scene.render(0.2), self.scene(JET).render(0.2))
+        self.same_frame(scene.render(0.2), jet_frame())
 
     def test_ctrl_c_ends_a_plan(self):
         for with_progress in (True, False):
@@ -1047,7 +1157,7 @@ class Interrupts(Case):
 
     def test_ctrl_c_while_it_draws(self):
         # Nothing is given up that is nearly done; the interrupt comes all the same, as itself.
-        scene = self.scene(bench(1600, 1200), set={"cameras.eye.samples": 4})
+        scene = self.scene(bench(800, 600), set={"cameras.eye.samples": 4})
         before = scene.render(0.4)
         threading.Timer(0.15, os.kill, (os.getpid(), signal.SIGINT)).start()
         with self.assertRaises(KeyboardInterrupt):
@@ -1056,18 +1166,27 @@ class Interrupts(Case):
         self.same_frame(scene.render(0.4), before)
 
     def test_progress_is_told(self):
+        class Thing:
+            pass
+
         scene = self.scene(JET, set={**cold(), "accuracy": "1 %"})
-        shares, on = [], set()
+        shares, on, things = [], set(), []
 
         def told(share):
             shares.append(share)
             on.add(threading.get_ident())
+            thing = Thing()
+            things.append(weakref.ref(thing))
+            return thing
 
         scene.render(0.2, progress=told)
         self.assertGreater(len(shares), 2)
         self.assertTrue(all(isinstance(s, float) and 0.0 <= s <= 1.0 for s in shares), shares)
         self.assertEqual(shares, sorted(shares))
         self.assertEqual(on, {threading.get_ident()})
+        # What it returns is let go.
+        gc.collect()
+        self.assertEqual([r for r in things if r() is not None], [])
 
     def test_what_progress_throws_comes_through(self):
         class Enough(Exception):
@@ -1088,7 +1207,7 @@ class Interrupts(Case):
                 self.assertFalse(scene.planned())
 
     def test_what_progress_throws_while_it_draws(self):
-        scene = self.scene(bench(1600, 1200), set={"cameras.eye.samples": 4})
+        scene = self.scene(bench(800, 600), set={"cameras.eye.samples": 4})
         before = scene.render(0.4)
 
         def told(share):
@@ -1103,20 +1222,3 @@ class Interrupts(Case):
         scene = self.scene(JET, set=cold())
         with self.assertRaises(InputError):
             scene.render(0.2, progress=lambda share: scene.planned())
-
-    def test_what_progress_returns_is_let_go(self):
-        class Thing:
-            pass
-
-        scene = self.scene(JET, set={**cold(), "accuracy": "1 %"})
-        things = []
-
-        def told(share):
-            thing = Thing()
-            things.append(weakref.ref(thing))
-            return thing
-
-        scene.render(0.2, progress=told)
-        gc.collect()
-        self.assertGreater(len(things), 1)
-        self.assertEqual([r for r in things if r() is not None], [])
