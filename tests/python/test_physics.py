@@ -6,7 +6,7 @@ import numpy as np
 import pitviper
 from pitviper import InputError, band_integral, band_mean, band_radiance, planck, planck_slope
 
-from support import Folder, scenarios
+from support import Folder, bench, scenarios
 
 # CODATA 2018, exact but for the last: h, c, k; Stefan and Boltzmann's, Wien's.
 H, C, K = 6.62607015e-34, 299792458.0, 1.380649e-23
@@ -244,25 +244,19 @@ class Surfaces(unittest.TestCase):
         np.testing.assert_allclose(pitviper.direction(np.pi / 2, np.pi / 2), (0, 1, 0), atol=1e-15)
 
     def test_states(self):
-        found = [n for n in ("low_emissivity_paint", "scaled_steel", "soil", "jet_exhaust") if self.states_of(n)]
-        scene = pitviper.Scene.load(scenarios / "thin_films.yaml")
-        changing = [scene.material(n) for n in scene.scenario()["materials"] if scene.material(n).states]
-        self.assertTrue(found or changing)
-        m = changing[0]
-        low, high = m.states["low"], m.states["high"]
-        name = m.name
-        um = 0.55
-        self.assertNotEqual(scene.material(name, low).reflectance(um), scene.material(name, high).reflectance(um))
-        with self.assertRaises(InputError):
-            scene.material(name, high * 2 + 1)
+        with pitviper.Scene.load(scenarios / "thin_films.yaml") as scene:
+            names = [n for n in scene.scenario()["materials"] if scene.material(n).states]
+            self.assertTrue(names)
+            states = scene.material(names[0]).states
+            low, high = states["low"], states["high"]
+            self.assertNotEqual(*(scene.material(names[0], state).reflectance(0.55) for state in (low, high)))
+            for wrong in (high * 2 + 1, float("nan")):
+                with self.subTest(wrong), self.assertRaises(InputError):
+                    scene.material(names[0], wrong)
+            with self.assertRaises(InputError):
+                scene.material("nothing")
         with self.assertRaises(InputError):
             pitviper.material("blackbody", 300.0)
-
-    def states_of(self, name):
-        try:
-            return pitviper.material(name).states
-        except InputError:
-            return None
 
     def test_shapes(self):
         m = pitviper.material("concrete")
@@ -361,8 +355,6 @@ class Air(unittest.TestCase):
         self.assertAlmostEqual(found, expected, delta=1e-3)  # by middles of bins of 5 1/cm
 
     def test_without_air(self):
-        from support import bench
-
         with pitviper.Scene.load(bench()) as scene:
             path = scene.path((0, 0, 0), (0, 1000, 0), [4.0, 10.0])
             self.assertEqual((path["transmittance"].tolist(), path["path_radiance"].tolist()), ([1.0, 1.0], [0.0, 0.0]))
