@@ -102,7 +102,7 @@ class AgainstTheProgram(Case):
             self.same_frame(a, d)
 
     def test_insb_camera_with_noise_at_its_first_frame_and_at_frame_5(self):
-        film = {"cameras.seeker.film": {"width": 160, "height": 128, "pitch": "15 um"}, "audit": 0}
+        film = {"cameras.seeker.film": {"width": 96, "height": 80, "pitch": "15 um"}, "audit": 0}
         read = run_program(self.folder.path, scenarios / "insb_camera.yaml", film, "0:5")
         scene, (first,), _ = self.compare(scenarios / "insb_camera.yaml", film, (0, 0), read[:1])
         self.same_frame(scene.render(scene.times[5]), read[5])
@@ -846,8 +846,8 @@ class Reference(Case):
     def test_a_spectrum_is_the_channels(self):
         frame = self.jet.render(0.2)
         row, column = (n // 2 for n in frame.shape)
-        told = self.jet.spectrum(column, row, 3.7, 4.8, bins=40, time=0.2)
-        self.assertEqual((told["edge_um"].shape, told["wavelength_um"].shape, told["all"].shape), ((41,), (40,), (40,)))
+        told = self.jet.spectrum(column, row, 3.7, 4.8, bins=20, time=0.2)
+        self.assertEqual((told["edge_um"].shape, told["wavelength_um"].shape, told["all"].shape), ((21,), (20,), (20,)))
         self.assertEqual((told["edge_um"][0], told["edge_um"][-1]), (3.7, 4.8))
         total = np.sum(told["all"] * np.diff(told["edge_um"]))
         self.assertAlmostEqual(total / frame["mw.radiance"][row, column], 1.0, delta=0.02)
@@ -1126,14 +1126,14 @@ class Threads(Case):
         other.start()
         try:
             before = counted[0]
-            for k in range(5):
+            for k in range(3):
                 scene.render(0.04 * k)
             during = counted[0] - before
         finally:
             ends.set()
             other.join()
         # Held through a picture, the lock lets it count once or twice between two.
-        self.assertGreater(during, 25)
+        self.assertGreater(during, 15)
 
 
 class Interrupts(Case):
@@ -1168,7 +1168,6 @@ class Interrupts(Case):
                 # Given up, not waited for.
                 self.assertFalse(scene.planned())
                 self.assertTrue(all(s < 1.0 for s in shares), shares)
-                self.usable(scene)
 
     def test_ctrl_c_ends_plan_of_its_own(self):
         scene = self.scene(JET, set=cold())
@@ -1176,6 +1175,7 @@ class Interrupts(Case):
         with self.assertRaises(KeyboardInterrupt):
             scene.plan()
         self.assertFalse(scene.planned())
+        self.usable(scene)
 
     def test_ctrl_c_ends_waiting_for_a_drafts_plan(self):
         scene = self.scene(JET, set=cold())
@@ -1187,9 +1187,9 @@ class Interrupts(Case):
 
     def test_ctrl_c_while_it_draws(self):
         # Nothing is given up that is nearly done; the interrupt comes all the same, as itself.
-        scene = self.scene(bench(1024, 768), set={"cameras.eye.samples": 4})
+        scene = self.scene(bench(800, 600), set={"cameras.eye.samples": 4})
         before = scene.render(0.4)
-        for after in (0.05, 0.12, 0.2):
+        for after in (0.05, 0.15):
             with self.subTest(after=after):
                 threading.Timer(after, os.kill, (os.getpid(), signal.SIGINT)).start()
                 with self.assertRaises(KeyboardInterrupt):
