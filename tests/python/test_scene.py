@@ -150,7 +150,7 @@ class AgainstTheProgram(Case):
 
     def test_a_saved_frame_is_the_frame(self):
         frame = self.scene(detector()).render()
-        for ending in ("exr", "fits", "tif", "raw", "hdr"):
+        for ending in ("exr", "fits", "tiff", "tif", "raw", "hdr", "json"):
             with self.subTest(ending):
                 file = self.folder.path / f"saved.{ending}"
                 frame.save(file)
