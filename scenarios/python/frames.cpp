@@ -33,7 +33,12 @@ py::array layerOf(const FrameHolder& frame, const std::string& name) {
 
 py::dict attributesOf(const Frame& frame) {
   py::dict all;
-  for (const Attribute& a : frame.attributes) std::visit([&](const auto& v) { all[py::str(a.name)] = py::cast(v); }, a.value);
+  for (const Attribute& a : frame.attributes) {
+    // A list of numbers that a file holds as text.
+    const auto numbers = std::holds_alternative<std::string>(a.value) ? numbersOf(a) : std::nullopt;
+    if (numbers && numbers->size() > 1) all[py::str(a.name)] = *numbers;
+    else std::visit([&](const auto& v) { all[py::str(a.name)] = py::cast(v); }, a.value);
+  }
   return all;
 }
 
@@ -67,9 +72,10 @@ void writeTo(const Frame& frame, const std::filesystem::path& file, const std::s
   std::vector<std::string> endings;
   for (const FileFormat& f : fileFormats()) {
     endings.push_back(f.extension);
-    if (file.extension() != f.extension) continue;
+    if (file.extension() != f.extension && !(file.extension() == ".tiff" && f.name == "tiff")) continue;
     FileOptions options;
     if (compression == "zip") options.compression = ExrCompression::Zip;
+    else if (compression != "none") throw unknownWord({"save", 0, 0, -1}, "there is no compression", compression, {"none", "zip"});
     py::gil_scoped_release others;
     f.write(file, frame, options);
     return;
@@ -80,6 +86,8 @@ void writeTo(const Frame& frame, const std::filesystem::path& file, const std::s
 /// A picture for people, by colour bar and unit.
 void writePicture(const Frame& frame, const std::filesystem::path& file, const std::optional<std::string>& layer, bool truth,
                   const std::optional<std::pair<double, double>>& range) {
+  if (range && !(std::isfinite(range->first) && std::isfinite(range->second) && range->first < range->second))
+    throw UserError({"picture", 0, 0, -1}, "the range does not rise", "(low, high), in the layers' unit", "swap its ends");
   PictureStyle style;
   style.ownScale = true;
   style.truth = truth;

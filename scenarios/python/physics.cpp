@@ -177,6 +177,7 @@ void drawPanels(const py::list& panels, int columns, const std::filesystem::path
                         "as many of each", "give both");
       chart.series.push_back(std::move(s));
     }
+    if (chart.series.empty()) throw UserError({"chart", 0, 0, -1}, "nothing to draw", "at least one curve", "give one");
     charts.push_back(std::move(chart));
   }
   if (charts.empty()) throw UserError({"chart", 0, 0, -1}, "nothing to draw", "at least one panel", "give a series");

@@ -25,7 +25,9 @@ py::object scalarOf(const Value& value) {
   char* end = nullptr;
   const double number = std::strtod(value.text.c_str(), &end);
   if (value.text.empty() || *end != '\0') return py::str(value.text);
-  if (value.text.find_first_not_of("+-0123456789") == std::string::npos && std::abs(number) < 1e15) return py::int_(static_cast<long long>(number));
+  if (value.text.find_first_not_of("+-0123456789") == std::string::npos)
+    return py::reinterpret_steal<py::object>(PyLong_FromString(value.text.c_str(), nullptr, 10));
+  if (value.text.find_first_of("0123456789") == std::string::npos || value.text.find_first_of("xX") != std::string::npos) return py::str(value.text);
   return py::float_(number);
 }
 
@@ -53,9 +55,9 @@ py::object objectOf(const Value& value) {
 SceneProgress progressOf(const py::object& told) {
   return [&told](double share) {
     const py::gil_scoped_acquire python;
-    if (PyErr_CheckSignals() != 0) return true;
-    if (told.is_none() || PyObject_CallFunction(told.ptr(), "d", share) != nullptr) return false;
-    return true;  // what it threw is Python's error now
+    // What a signal's handler or the function threw is Python's error from then on.
+    if (PyErr_Occurred() || PyErr_CheckSignals() != 0) return true;
+    return !told.is_none() && !py::reinterpret_steal<py::object>(PyObject_CallFunction(told.ptr(), "d", share));
   };
 }
 
@@ -70,25 +72,36 @@ std::size_t cameraNamed(const Simulation& sim, const std::optional<std::string>&
 }
 
 void requireTime(const OpenScene& scene, double time_s) {
+  const TimeAxis time = scene.simulation()->time;
   if (!std::isfinite(time_s)) throw UserError({"time", 0, 0, -1}, "a time that is no number", "seconds", "name a time of " + scene.source().file);
+  if (!(std::abs((time_s - time.start_s) / time.step_s) < 1e9))
+    throw UserError({"time", 0, 0, -1}, "a time of no frame that could be counted", "less than 1e9 frames from the scenario's first",
+                    "name a time nearer to it");
+}
+
+/// With the interpreter's lock: what Python's own code threw meanwhile.
+void throwPythons() {
+  if (PyErr_Occurred()) throw py::error_already_set();
 }
 
 py::dict drawn(OpenScene& scene, const std::optional<std::string>& camera, double time_s, bool draft, bool audited, std::uint64_t noise,
                const py::object& progress) {
   requireTime(scene, time_s);
-  const DrawWish wish{cameraNamed(*scene.simulation(), camera), time_s, draft, noise, audited};
+  const auto sim = scene.simulation();
+  const DrawWish wish{cameraNamed(*sim, camera), time_s, draft, noise, audited};
   const SceneProgress tell = progressOf(progress);
   DrawnFrame d;
   {
     py::gil_scoped_release others;
     d = scene.draw(wish, tell);
   }
+  throwPythons();
   py::dict result;
   result["frame"] = d.frame;
   result["draft"] = d.isDraft;
   result["outside_limits"] = d.isOutsideLimits;
   py::dict predicted;
-  const Camera& c = scene.simulation()->cameras[wish.camera];
+  const Camera& c = sim->cameras[wish.camera];
   for (std::size_t o = 0; o < d.predicted.size() && o < c.outputs.size(); ++o) predicted[py::str(c.outputs[o].layer())] = d.predicted[o];
   result["predicted_error"] = predicted;
   if (d.audit.pixels > 0) {
@@ -138,7 +151,8 @@ py::dict worldOf(OpenScene& scene, double time_s) {
 
 py::list camerasOf(const OpenScene& scene) {
   py::list all;
-  for (const Camera& c : scene.simulation()->cameras) {
+  const auto sim = scene.simulation();
+  for (const Camera& c : sim->cameras) {
     py::dict one, layers;
     for (const ChannelOutput& o : c.outputs) layers[py::str(o.layer())] = o.unit;
     one["name"] = c.name, one["width"] = c.pinhole.width, one["height"] = c.pinhole.height, one["layers"] = layers;
@@ -188,14 +202,22 @@ py::dict spectrumAt(OpenScene& scene, const std::optional<std::string>& camera, 
   return all;
 }
 
+/// Other threads of Python run while what is made beside ends.
+struct WithoutLock {
+  void operator()(OpenScene* scene) const {
+    const py::gil_scoped_release others;
+    delete scene;
+  }
+};
+
 }  // namespace
 
 void bindScenes(py::module_& m) {
-  py::class_<OpenScene>(m, "Scene")
+  py::class_<OpenScene, std::unique_ptr<OpenScene, WithoutLock>>(m, "Scene")
       .def(py::init([](const std::string& file, const std::optional<std::string>& text, const std::filesystem::path& base, const std::vector<std::string>& sets,
                        const std::vector<std::filesystem::path>& roots) {
         py::gil_scoped_release others;
-        return std::make_unique<OpenScene>(SceneSource{file, text, base, sets, roots});
+        return std::unique_ptr<OpenScene, WithoutLock>(new OpenScene(SceneSource{file, text, base, sets, roots}));
       }))
       .def(
           "close", [](OpenScene& s) { s.close(); }, py::call_guard<py::gil_scoped_release>())
@@ -211,8 +233,8 @@ void bindScenes(py::module_& m) {
           "set", [](OpenScene& s, const std::string& path, const std::string& yaml) { s.change(s.source().with(path, yaml).sets); },
           py::call_guard<py::gil_scoped_release>())
       .def("expect", &OpenScene::expect, py::call_guard<py::gil_scoped_release>())
-      .def("get", [](const OpenScene& s, const std::string& path) { return objectOf(valueAt(s.tree(), path)); })
-      .def("tree", [](const OpenScene& s) { return objectOf(s.tree()); })
+      .def("get", [](const OpenScene& s, const std::string& path) { return objectOf(valueAt(s.expanded()->tree, path)); })
+      .def("tree", [](const OpenScene& s) { return objectOf(s.expanded()->tree); })
       .def("command",
            [](OpenScene& s, const std::string& json, double time_s) {
              const Location where{"command", 0, 0, -1};
@@ -222,17 +244,31 @@ void bindScenes(py::module_& m) {
       .def("forget", &OpenScene::forgetCommands)
       .def("world", &worldOf)
       .def("draw", &drawn)
-      .def("planned", [](OpenScene& s, const std::optional<std::string>& camera) { return s.isPlanned(cameraNamed(*s.simulation(), camera)); })
+      .def("planned",
+           [](OpenScene& s, const std::optional<std::string>& camera, double time_s) {
+             requireTime(s, time_s);
+             return s.isPlanned(cameraNamed(*s.simulation(), camera), time_s);
+           })
       .def("plan",
            [](OpenScene& s, const std::optional<std::string>& camera, bool asJson, const py::object& progress) {
-             const std::size_t number = cameraNamed(*s.simulation(), camera);
+             const auto sim = s.simulation();
+             const std::size_t number = cameraNamed(*sim, camera);
              const SceneProgress tell = progressOf(progress);
-             py::gil_scoped_release others;
-             const Plan plan = s.plan(number, tell);
-             return planText(*s.simulation(), s.simulation()->cameras[number], plan, asJson);
+             std::string text;
+             {
+               const py::gil_scoped_release others;
+               text = planText(*sim, sim->cameras[number], s.plan(number, tell), asJson);
+             }
+             throwPythons();
+             return text;
            })
       .def(
-          "check", [](const OpenScene& s) { return sceneText(*s.simulation()); }, py::call_guard<py::gil_scoped_release>())
+          "check",
+          [](const OpenScene& s) {
+            const auto sim = s.simulation();
+            return sceneText(*sim);
+          },
+          py::call_guard<py::gil_scoped_release>())
       .def("terms", &termsAt)
       .def("spectrum", &spectrumAt);
 }

@@ -29,7 +29,7 @@ namespace {
 constexpr std::chrono::milliseconds kLookBeside{5};
 
 /// Drawings that are kept with other keys than a world holds.
-constexpr std::size_t kMostKept = 32;
+constexpr std::size_t kMostKept = 8;  // 20 to 130 MB each
 
 /// Whether a camera's pictures depend on those before.
 bool remembers(const Camera& camera, const Simulation& sim) { return camera.follower || warmUpOf(camera, sim.time.step_s) > 0; }
@@ -43,6 +43,9 @@ SceneSource inMemory(SceneSource source) {
 }
 
 int frameAt(const TimeAxis& time, double time_s) { return static_cast<int>(std::lround((time_s - time.start_s) / time.step_s)); }
+
+/// The frame that a command holds from, as of a scenario's own.
+int tickOf(const TimeAxis& time, double time_s) { return std::max(0, static_cast<int>(std::ceil((time_s - time.start_s) / time.step_s - kSameTick))); }
 
 }  // namespace
 
@@ -237,9 +240,36 @@ auto OpenScene::onDesk(Work&& work, const SceneProgress& progress) {
       });
 }
 
-std::function<WorldState(double)> OpenScene::stateAt(const std::shared_ptr<const Simulation>& of) const {
-  if (commanded_) return [world = commanded_, of](double t) { return world->at(t); };
-  return [of](double t) { return advance(*of, t); };
+SceneSource OpenScene::source() const {
+  const std::lock_guard lock(state_);
+  return source_;
+}
+
+std::shared_ptr<const ExpandedScenario> OpenScene::expanded() const {
+  const std::lock_guard lock(state_);
+  return expanded_;
+}
+
+std::shared_ptr<const Simulation> OpenScene::simulation() const {
+  const std::lock_guard lock(state_);
+  return simulation_;
+}
+
+std::shared_ptr<World> OpenScene::worldAt(int frame) const {
+  if (commands_.empty() || commands_.back().tick <= frame) return commanded_;
+  if (before_.second && before_.first == frame) return before_.second;
+  auto world = std::make_shared<World>(*simulation_);
+  for (const Commanded& c : commands_)
+    if (c.tick <= frame) world->apply(readCommand(c.words, *simulation_, c.time_s), c.tick);
+  before_ = {frame, world};
+  return world;
+}
+
+StateAt OpenScene::stateAt(std::optional<int> frame) const {
+  const auto sim = simulation_;
+  if (!commanded_) return [sim](double t) { return advance(*sim, t); };
+  if (frame) return [sim, world = worldAt(*frame)](double t) { return world->at(t); };
+  return [this, sim](double t) { return worldAt(frameAt(sim->time, t))->at(t); };
 }
 
 void OpenScene::change(std::vector<std::string> sets) {
@@ -249,11 +279,17 @@ void OpenScene::change(std::vector<std::string> sets) {
   auto expanded = std::make_shared<const ExpandedScenario>(source.expanded());
   auto simulation = std::make_shared<const Simulation>(source.read(*expanded));
   std::shared_ptr<World> world;
-  if (commanded_) {
-    world = std::make_shared<World>(*simulation);
-    for (const auto& [words, time_s] : commands_) world->apply(readCommand(words, *simulation, time_s), std::max(0, frameAt(simulation->time, time_s)));
+  std::vector<Commanded> commands = commands_;
+  if (commanded_) world = std::make_shared<World>(*simulation);
+  for (Commanded& c : commands) {
+    c.tick = tickOf(simulation->time, c.time_s);
+    world->apply(readCommand(c.words, *simulation, c.time_s), c.tick);
   }
-  if (const auto before = std::exchange(simulation_, simulation); commanded_) commanded_ = std::move(world);
+  commands_ = std::move(commands);
+  before_ = {-1, nullptr};
+  commanded_ = std::move(world);
+  const std::lock_guard lock(state_);
+  simulation_ = std::move(simulation);
   source_ = std::move(source);
   expanded_ = std::move(expanded);
 }
@@ -280,26 +316,25 @@ void OpenScene::expect(const std::vector<std::vector<std::string>>& variations, 
 void OpenScene::command(const Value& words, double time_s) {
   const Use use(*this);
   const Command command = readCommand(words, *simulation_, time_s);
-  const int tick = std::max(0, frameAt(simulation_->time, time_s));
-  if (tick < lastTick_)
-    throw UserError(words.where, "a command for frame " + std::to_string(tick) + " after one for frame " + std::to_string(lastTick_),
-                    "commands whose times rise", "forget those before (reset)");
+  const int tick = tickOf(simulation_->time, time_s), last = commands_.empty() ? 0 : commands_.back().tick;
+  if (tick < last)
+    throw UserError(words.where, "a command for frame " + std::to_string(tick) + " after one for frame " + std::to_string(last), "commands whose times rise",
+                    "forget those before (reset)");
   if (!commanded_) commanded_ = std::make_shared<World>(*simulation_);
   commanded_->apply(command, tick);
-  commands_.emplace_back(words, time_s);
-  lastTick_ = tick;
+  commands_.push_back({words, time_s, tick});
 }
 
 void OpenScene::forgetCommands() {
   const Use use(*this);
   commanded_.reset();
   commands_.clear();
-  lastTick_ = 0;
+  before_ = {-1, nullptr};
 }
 
 WorldState OpenScene::world(double time_s) {
   const Use use(*this);
-  return stateAt(simulation_)(time_s);
+  return stateAt(frameAt(simulation_->time, time_s))(time_s);
 }
 
 DrawnFrame OpenScene::draw(const DrawWish& wish, const SceneProgress& progress) {
@@ -308,15 +343,18 @@ DrawnFrame OpenScene::draw(const DrawWish& wish, const SceneProgress& progress) 
       [&](Desk& desk, const auto& planning) {
         const auto sim = simulation_;
         const Camera& camera = sim->cameras[wish.camera];
-        const StateAt own = stateAt(sim);
+        const int frame = frameAt(sim->time, wish.time_s);
+        const StateAt own = stateAt(frame);
         Desk::Drawn& drawn = desk.lineFor(*this, wish.camera, own, wish.time_s, wish.draft, planning);
         const bool isOther = drawn.sim != sim || drawn.planned != sim;
-        const StateAt state = isOther ? StateAt([&camera, own](double t) { return worldFor(camera, own(t)); }) : own;
-        const int frame = frameAt(sim->time, wish.time_s);
+        const auto drawnBy = [&camera, isOther](const StateAt& world) {
+          return isOther ? StateAt([&camera, world](double t) { return worldFor(camera, world(t)); }) : world;
+        };
+        const StateAt state = drawnBy(own), before = isOther || commanded_ ? drawnBy(stateAt()) : StateAt();
         if (remembers(camera, *sim) && drawn.last) {
-          if (*drawn.last + 1 != frame) drawn.line->startAgain(frame, shaderLibrary());
+          if (*drawn.last + 1 != frame) drawn.line->startAgain(frame, shaderLibrary(), before);
         } else if (!drawn.last) {
-          drawn.line->warmUp(frame);
+          drawn.line->warmUp(frame, before);
         }
         drawn.last = frame;
         CameraLine& line = *drawn.line;
@@ -334,7 +372,9 @@ DrawnFrame OpenScene::draw(const DrawWish& wish, const SceneProgress& progress) 
         DrawnFrame result;
         result.isDraft = line.isDraft();
         result.isOutsideLimits = !outsideLimits(*sim, camera, world).empty();
-        result.predicted = line.renderer().plan().predictedError;
+        const Plan& plan = line.renderer().plan();
+        for (const int slot : plan.slotOfOutput)
+          if (!plan.predictedError.empty()) result.predicted.push_back(plan.predictedError[static_cast<std::size_t>(slot)]);
         if (audits) result.audit = line.auditor().tally();
         result.frame = std::make_shared<Frame>(std::move(f));
         return result;
@@ -346,29 +386,36 @@ Plan OpenScene::plan(std::size_t camera, const SceneProgress& progress) {
   const Use use(*this);
   return onDesk(
       [&](Desk& desk, const auto& planning) {
-        return desk.lineFor(*this, camera, stateAt(simulation_), simulation_->time.start_s, false, planning).line->renderer().plan();
+        return desk.lineFor(*this, camera, stateAt(frameAt(simulation_->time, simulation_->time.start_s)), simulation_->time.start_s, false, planning)
+            .line->renderer()
+            .plan();
       },
       progress);
 }
 
-bool OpenScene::isPlanned(std::size_t camera) {
+bool OpenScene::isPlanned(std::size_t camera, double time_s) {
   const Use use(*this);
   return onDesk([&](Desk& desk, const auto&) {
     const auto drawn = desk.now.find(camera);
-    if (drawn != desk.now.end() && drawn->second.sim == simulation_ && drawn->second.line) return !drawn->second.line->isDraft();
+    if (drawn != desk.now.end() && drawn->second.line) {
+      if (drawn->second.sim == simulation_) return !drawn->second.line->isDraft();
+      if (desk.serves(drawn->second, *this, camera, stateAt(frameAt(simulation_->time, time_s)), time_s)) return true;
+    }
     return !hasDraft(*simulation_, simulation_->cameras[camera]);
   });
 }
 
 PixelParts OpenScene::parts(std::size_t camera, double time_s, int column, int row) {
   const Use use(*this);
-  return onDesk([&](Desk& desk, const auto&) { return desk.meterFor(simulation_, camera).at(stateAt(simulation_)(time_s), column, row); });
+  return onDesk(
+      [&](Desk& desk, const auto&) { return desk.meterFor(simulation_, camera).at(stateAt(frameAt(simulation_->time, time_s))(time_s), column, row); });
 }
 
 PixelSpectrum OpenScene::spectrum(std::size_t camera, double time_s, int column, int row, double low_um, double high_um, int bins) {
   const Use use(*this);
-  return onDesk(
-      [&](Desk& desk, const auto&) { return desk.meterFor(simulation_, camera).spectrum(stateAt(simulation_)(time_s), column, row, low_um, high_um, bins); });
+  return onDesk([&](Desk& desk, const auto&) {
+    return desk.meterFor(simulation_, camera).spectrum(stateAt(frameAt(simulation_->time, time_s))(time_s), column, row, low_um, high_um, bins);
+  });
 }
 
 }  // namespace pitviper

@@ -48,11 +48,10 @@ class OpenScene {
   void close();
   bool isClosed() const { return !thread_; }
 
-  const SceneSource& source() const { return source_; }
-  /// The scenario as it is read now.
-  const Value& tree() const { return expanded_->tree; }
-  /// As it is read now. Changes make another.
-  std::shared_ptr<const Simulation> simulation() const { return simulation_; }
+  // What it is now; changes make others. On any thread, while others draw or change it too.
+  SceneSource source() const;
+  std::shared_ptr<const ExpandedScenario> expanded() const;
+  std::shared_ptr<const Simulation> simulation() const;
   /// Reads it anew with other keys ("path=value"); what was commanded holds on. Errors: UserError, and then nothing has changed.
   void change(std::vector<std::string> sets);
   /// What it is now is what later changes are held against, not each other: a picture does not depend on those before. What has been drawn with other keys than
@@ -71,8 +70,8 @@ class OpenScene {
   DrawnFrame draw(const DrawWish& wish, const SceneProgress& progress = {});
   /// Of a camera, as its next picture is drawn; made where there is none.
   Plan plan(std::size_t camera, const SceneProgress& progress = {});
-  /// Whether the next picture waits for no plan.
-  bool isPlanned(std::size_t camera);
+  /// Whether a picture of a time waits for no plan.
+  bool isPlanned(std::size_t camera, double time_s);
   PixelParts parts(std::size_t camera, double time_s, int column, int row);
   PixelSpectrum spectrum(std::size_t camera, double time_s, int column, int row, double low_um, double high_um, int bins);
 
@@ -80,19 +79,27 @@ class OpenScene {
   class Use;
   struct Desk;
   struct Told;
-  std::function<WorldState(double)> stateAt(const std::shared_ptr<const Simulation>& of) const;
+  std::shared_ptr<World> worldAt(int frame) const;
+  /// Around a frame, with the commands that there are by then; without one of whatever time is asked for.
+  StateAt stateAt(std::optional<int> frame = {}) const;
   template <class Work>
   auto onDesk(Work&& work, const SceneProgress& progress = {});
 
   SceneSource source_;
   std::shared_ptr<const ExpandedScenario> expanded_;
   std::shared_ptr<const Simulation> simulation_;
-  std::vector<std::pair<Value, double>> commands_;
-  std::shared_ptr<World> commanded_;  ///< null: nothing was
-  int lastTick_ = 0;
-  std::shared_ptr<const Simulation> kept_;  ///< of keepDrawings(); null: it was not called
+  struct Commanded {
+    Value words;
+    double time_s;
+    int tick;
+  };
+  std::vector<Commanded> commands_;                                     ///< ticks rise
+  std::shared_ptr<World> commanded_;                                    ///< with all of them; null: nothing was commanded
+  mutable std::pair<int, std::shared_ptr<World>> before_{-1, nullptr};  ///< with those up to a tick
+  std::shared_ptr<const Simulation> kept_;                              ///< of keepDrawings(); null: it was not called
   std::shared_ptr<const ExpandedScenario> keptExpanded_;
   std::vector<ExpectedWorld> expected_;
+  mutable std::mutex state_;  ///< of what it is now
   std::mutex inUse_;
   std::unique_ptr<GlThread> thread_;
   std::unique_ptr<Desk> desk_;  ///< of that thread

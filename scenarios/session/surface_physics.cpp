@@ -46,14 +46,20 @@ std::shared_ptr<const Material> materialOf(const Simulation& simulation, const s
 }
 
 std::shared_ptr<const Material> materialOf(const std::string& name, const Libraries& libraries) {
+  // As messages are to call it.
+  const auto called = [&name](const std::shared_ptr<const Material>& read) {
+    auto own = std::make_shared<Material>(*read);
+    own->name = name;
+    return own;
+  };
   const std::filesystem::path folder = libraries.materials, substances = folder.parent_path() / "substances";
   std::error_code ignored;
-  if (std::filesystem::is_regular_file(name, ignored)) return readMaterialFile(name, libraries);
+  if (std::filesystem::is_regular_file(name, ignored)) return called(readMaterialFile(name, libraries));
   // A name, not a way out of the library.
   if (name.find('/') == std::string::npos) {
-    if (const auto file = folder / (name + ".yaml"); std::filesystem::is_regular_file(file, ignored)) return readMaterialFile(file, libraries);
+    if (const auto file = folder / (name + ".yaml"); std::filesystem::is_regular_file(file, ignored)) return called(readMaterialFile(file, libraries));
     if (std::filesystem::is_regular_file(substances / (name + ".yaml"), ignored))
-      return readMaterialText("components:\n  - {reflection: microfacet, index: " + name + ", roughness: 0.05}\n", ".", libraries);
+      return called(readMaterialText("components:\n  - {reflection: microfacet, index: " + name + ", roughness: 0.05}\n", ".", libraries));
   }
   std::vector<std::string> names = libraryNamesIn(folder);
   const std::vector<std::string> further = libraryNamesIn(substances);

@@ -29,9 +29,9 @@ void CameraLine::makeSensor(const ShaderLibrary& library) {
   if (camera_.follower) pointer_ = std::make_unique<CameraPointer>(simulation_, camera_);
 }
 
-void CameraLine::startAgain(int first, const ShaderLibrary& library) {
+void CameraLine::startAgain(int first, const ShaderLibrary& library, const StateAt& stateAt) {
   makeSensor(library);
-  warmUp(first);
+  warmUp(first, stateAt);
 }
 
 void CameraLine::takeOver(std::unique_ptr<CameraDrawing> drawing) {
@@ -40,16 +40,16 @@ void CameraLine::takeOver(std::unique_ptr<CameraDrawing> drawing) {
   isDraft_ = false;
 }
 
-void CameraLine::warmUp(int first) {
+void CameraLine::warmUp(int first, const StateAt& others) {
   const TimedPart part("frames before the first");
-  const auto scenarios = [this](double t) { return advance(simulation_, t); };
+  const StateAt scenarios = others ? others : [this](double t) { return advance(simulation_, t); };
   const int frames = warmUpOf(camera_, simulation_.time.step_s);
   for (int number = (looksAtItsPictures() ? 0 : first) - frames; number < first; ++number) {
     const double time_s = simulation_.time.at(number);
     // Before its first tick it stands where it starts.
     const bool ticks = !pointer_ || (number >= 0 && pointer_->remembers());
     if (!ticks) pointer_->tickTo(scenarios, pointer_->remembers() ? 0 : std::max(first, 0));
-    begin(ticks ? StateAt(scenarios) : pointer_->around(scenarios), time_s, ticks ? std::optional(number) : std::nullopt);
+    begin(ticks ? scenarios : pointer_->around(scenarios), time_s, ticks ? std::optional(number) : std::nullopt);
     const CameraImage image = finish();
     if (looksAtItsPictures()) seen(image, stateAt_(time_s), number, {}, {});
     else sensed(simulation_, camera_, image, stateAt_(time_s), number, *chain_);

@@ -26,9 +26,9 @@ class CameraLine {
 
   /// Detectors that remember see so many frames before the first, which nobody gets; a follower that looks at its own pictures all from the scenario's first
   /// on.
-  void warmUp(int first);
+  void warmUp(int first, const StateAt& stateAt = {});
   /// As if `first` were the first frame: what detectors and followers remember is forgotten.
-  void startAgain(int first, const ShaderLibrary& library);
+  void startAgain(int first, const ShaderLibrary& library, const StateAt& stateAt = {});
   /// Another draw of the detector's noise in frames to come; 0: the scenario's own.
   void setNoise(std::uint64_t noise) {
     if (chain_) chain_->setNoise(noise);

@@ -439,6 +439,27 @@ class Keys(Case):
         motion = [{"time": "0 s", "position": ["-240 m", "1.9 km", "650 m"]}, {"time": "2 s", "position": ["240 m", "1.9 km", "650 m"]}]
         self.within_limits("entities.jet.motion", motion)
 
+    def test_a_plan_for_variations_holds_at_them(self):
+        # The sky beside the jet, towards the sun's side and away from it, against every wavelength in double precision.
+        small = {**LIMITS, "cameras.tracker.film": {"width": 16, "height": 12, "pitch": "75 um"}}
+        scene = self.scene(JET, set=small)
+
+        def places(k):
+            angle = 2.0 * np.pi * k / 8.0
+            where = [f"{1500.0 * np.cos(angle)} m", f"{1500.0 * np.sin(angle)} m", "600 m"]
+            return {"entities.jet.motion": [{"time": "0 s", "position": where}]}
+
+        scene.plan_for([places(k) for k in range(8)])
+        plans = set()
+        for k in (0.5, 3.0, 5.5):
+            scene.set(places(k))
+            sky = scene.render(0.0)
+            plans.add(sky.attributes["pitviper.plan"])
+            exact = self.scene(JET, set={**small, **places(k), "accuracy": "reference"}).render(0.0)
+            with self.subTest(k):
+                self.assertLessEqual(abs(sky["mw.radiance"][0, 0] / exact["mw.radiance"][0, 0] - 1.0), 0.01)
+        self.assertEqual(len(plans), 1)
+
     def test_beyond_limits_it_says_so_or_plans_anew(self):
         scene = self.scene(JET, set=LIMITS)
         before = scene.render(0.2)

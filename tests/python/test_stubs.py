@@ -12,7 +12,7 @@ def members():
     """Every public name: (dotted name, object). Classes, their methods and properties, and functions."""
     for name in pitviper.__all__:
         thing = getattr(pitviper, name)
-        if isinstance(thing, str):
+        if isinstance(thing, (str, pathlib.Path)):
             continue
         yield name, thing
         if not inspect.isclass(thing):

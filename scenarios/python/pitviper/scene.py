@@ -20,8 +20,8 @@ def _plain(value: Any) -> Any:
     """Values as JSON has them. Numbers of numpy are numbers; what is not finite is refused where it is read, as a word that is no number."""
     if isinstance(value, bool) or value is None or isinstance(value, str):
         return value
-    if isinstance(value, np.ndarray):
-        return [_plain(v) for v in value.tolist()]
+    if isinstance(value, (np.ndarray, np.bool_)):
+        return _plain(value.tolist())
     if isinstance(value, numbers.Integral):
         return int(value)
     if isinstance(value, numbers.Real):
@@ -88,10 +88,12 @@ class Scene:
 
     @property
     def closed(self) -> bool:
+        """Whether close() was called: nothing is drawn any more."""
         return self._held.closed
 
     @property
     def name(self) -> str:
+        """Its scenario's name."""
         return self._held.name
 
     @property
@@ -160,6 +162,8 @@ class Scene:
 
         Times may not fall. Errors: InputError.
         """
+        if "at" in keys:
+            raise TypeError("command() takes its time [s] by `time`, not by `at`")
         words = {"command": command, **keys}
         self._held.command(json.dumps(_plain(words)), self.now if time is None else float(time))
 
@@ -200,11 +204,12 @@ class Scene:
 
     def next(self, camera: str | None = None, **wishes: Any) -> Frame:
         """The frame after the newest; the first, at first."""
-        return self.render(self.now if self._now is None else self._now + self.step, camera, **wishes)
+        start, step, _ = self._held.time()
+        return self.render(start if self._now is None else start + step * (round((self._now - start) / step) + 1), camera, **wishes)
 
     def planned(self, camera: str | None = None) -> bool:
         """Whether the next picture waits for no plan."""
-        return self._held.planned(camera)
+        return self._held.planned(camera, self.now)
 
     def plan(self, camera: str | None = None, progress: Callable[[float], Any] | None = None) -> dict[str, Any]:
         """What its plan chose: wavelengths, tables, terms kept and left out, errors to expect, as `pitviper plan --json` tells them. Made where there is
