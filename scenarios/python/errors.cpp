@@ -19,8 +19,14 @@ py::object& inputError() {
 }
 
 void raiseInputError(const UserError& e) {
-  const UserError::Parts& p = e.parts();
-  py::object error = inputError()(e.what());
+  UserError::Parts p = e.parts();
+  std::string message = e.what();
+  // A key that was set here is no option of a command line.
+  if (const std::string option = "--set "; p.where.file.starts_with(option)) {
+    p.where.file = "scene key " + p.where.file.substr(option.size());
+    message = "scene key " + message.substr(option.size());
+  }
+  py::object error = inputError()(message);
   const auto orNone = [](int value) -> py::object { return value > 0 ? py::object(py::int_(value)) : py::object(py::none()); };
   error.attr("file") = p.where.file;
   error.attr("line") = orNone(p.where.line);

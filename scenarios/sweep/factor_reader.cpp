@@ -71,7 +71,9 @@ Distribution readLogUniform(const Value& pair, UnitOfFactor& unit) {
 Distribution readNormal(const Record& factor, UnitOfFactor& unit) {
   const Record n(factor.value("normal"), normalTable());
   const double mean = unit.read(n.value("mean")), sigma = unit.read(n.value("sigma"));
-  if (sigma <= 0.0) throw UserError(n.where("sigma"), "sigma is " + n.value("sigma").text, "a standard deviation above 0", "remove the factor, or widen it");
+  if (sigma <= 0.0)
+    throw UserError(n.where("sigma"), "sigma is " + n.value("sigma").text, "a standard deviation above 0",
+                    "write it without the minus, or give the scenario the mean itself");
   const Value* within = factor.find("within");
   if (!within) {
     const Distribution whole = Distribution::normal(mean, sigma);

@@ -51,7 +51,24 @@ SampleDrawer::SampleDrawer(const Sweep& sweep, const std::vector<std::filesystem
     for (std::size_t k = 0; k < m.names.size(); ++k) units_.push_back(k < m.units.size() ? m.units[k] : std::string());
   }
   scene_.keepDrawings();
-  scene_.change(setsOf(sweep, sweep.samples.front()));
+  readSome();
+}
+
+void SampleDrawer::readSome() {
+  constexpr std::size_t kMostChoices = 32;
+  std::set<std::size_t> some{0};
+  for (std::size_t f = 0; f < sweep_.factors.size(); ++f)
+    for (std::size_t c = 0; c < std::min(kMostChoices, sweep_.factors[f].choices.size()); ++c) {
+      const auto has = std::find_if(sweep_.samples.begin(), sweep_.samples.end(), [&](const Sample& s) { return s.values[f] == static_cast<double>(c); });
+      if (has != sweep_.samples.end()) some.insert(static_cast<std::size_t>(has - sweep_.samples.begin()));
+    }
+  for (const std::size_t s : some) try {
+      scene_.change(setsOf(sweep_, sweep_.samples[s]));
+    } catch (const UserError& e) {
+      const UserError::Parts& p = e.parts();
+      throw UserError({sweep_.file, 0, 0, -1}, "sample " + std::to_string(sweep_.samples[s].number) + ": " + p.where.text() + ": " + p.wrong, p.expected,
+                      p.fix);
+    }
 }
 
 void SampleDrawer::prepare() {
@@ -63,6 +80,7 @@ void SampleDrawer::prepare() {
 
 DrawnSample SampleDrawer::draw(const Sample& sample, bool allCameras) {
   DrawnSample drawn{{sample.number, sample.seed, sample.values, std::vector<double>(units_.size(), NAN), {}}, {}};
+  predicted_ = NAN, isOutside_ = false;
   try {
     scene_.change(setsOf(sweep_, sample));
     const auto sim = scene_.simulation();
@@ -74,7 +92,10 @@ DrawnSample SampleDrawer::draw(const Sample& sample, bool allCameras) {
       wish.camera = c;
       wish.time_s = sim->time.at(sweep_.frame);
       wish.noise = sample.seed;
-      std::shared_ptr<Frame> frame = scene_.draw(wish).frame;
+      const DrawnFrame one = scene_.draw(wish);
+      const std::shared_ptr<Frame>& frame = one.frame;
+      for (const double e : one.predicted) predicted_ = std::isnan(predicted_) ? e : std::max(predicted_, e);
+      isOutside_ = isOutside_ || one.isOutsideLimits;
       frame->number = sample.number;
       frame->attributes.push_back({"pitviper.sweep", sweep_.name});
       frame->attributes.push_back({"pitviper.sample", sample.number});
@@ -85,7 +106,7 @@ DrawnSample SampleDrawer::draw(const Sample& sample, bool allCameras) {
         if (factor.choices.empty()) frame->attributes.push_back({name + (factor.unit.empty() ? "" : " [" + factor.unit + "]"), sample.values[f]});
         else frame->attributes.push_back({name, factor.choices[static_cast<std::size_t>(sample.values[f])]});
       }
-      drawn.frames.push_back(std::move(frame));
+      drawn.frames.push_back(frame);
     }
     measure(sample, drawn);
   } catch (const UserError& e) {
@@ -100,6 +121,11 @@ void SampleDrawer::measure(const Sample& sample, DrawnSample& drawn) {
   std::size_t column = 0;
   for (std::size_t k = 0; k < sweep_.measures.size(); ++k) {
     const Measure& m = sweep_.measures[k];
+    if (m.kind == Measure::Kind::Expected) {
+      drawn.row.measures[column++] = predicted_;
+      drawn.row.measures[column++] = isOutside_ ? 1.0 : 0.0;
+      continue;
+    }
     const std::string& camera = scene_.simulation()->cameras[cameraOf(*scene_.simulation(), m)].name;
     const auto frame = std::find_if(drawn.frames.begin(), drawn.frames.end(), [&](const auto& f) { return f->camera == camera; });
     if (python_[k]) {

@@ -31,12 +31,16 @@ class SampleDrawer {
   const std::vector<std::string>& units() const { return units_; }
 
  private:
+  /// The first sample, and one of each choice: what keeps them from being read is found before anything is planned.
+  void readSome();
   void measure(const Sample& sample, DrawnSample& drawn);
   const Sweep& sweep_;
   OpenScene scene_;
   std::shared_ptr<const Simulation> simulation_;
   std::vector<std::unique_ptr<PythonMeasure>> python_;  ///< by measure; null: none of Python
   std::vector<std::string> units_;
+  double predicted_ = 0.0;  ///< of the sample's frames, the largest
+  bool isOutside_ = false;
 };
 
 }  // namespace pitviper

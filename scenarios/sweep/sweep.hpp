@@ -26,7 +26,7 @@ struct Sample {
 
 /// A number, or several of a Python function, that each sample gives.
 struct Measure {
-  enum class Kind { Truth, Statistic, Python };
+  enum class Kind { Truth, Statistic, Python, Expected };  ///< Expected: what every sweep has, last
   Location where;
   Kind kind = Kind::Statistic;
   std::vector<std::string> names;  ///< of its columns; one, but of a Python function

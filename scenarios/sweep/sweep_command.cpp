@@ -18,6 +18,7 @@
 #include "scenarios/sweep/slurm_job.hpp"
 #include "scenarios/sweep/solve_sweep.hpp"
 #include "scenarios/sweep/sweep_folder.hpp"
+#include "scenarios/sweep/sweep_identity.hpp"
 #include "sim/frame/file_formats.hpp"
 #include "sim/parameters/print.hpp"
 #include "sim/stream/sink_models.hpp"
@@ -103,8 +104,40 @@ void drawByProcesses(const SweepWish& w, const Sweep& sweep, const SweepStore& s
   }
 }
 
+/// Lines on what is not as it was asked: errors expected beyond the accuracy, pictures beyond limits, measures without a number.
+void tellDoubts(const SweepStore& store, const std::vector<SweepRow>& rows, const Simulation& sim) {
+  double asked = 0.0;
+  for (const Camera& c : sim.cameras) asked = std::max(asked, c.spectral.accuracy);
+  const std::vector<MeasureColumn> columns = measureColumns(store.identity());
+  int beyond = 0, outside = 0, firstOutside = -1;
+  double worst = 0.0;
+  std::vector<int> without(columns.size(), 0);
+  int drawn = 0;
+  for (const SweepRow& r : rows) {
+    if (!r.why.empty()) continue;
+    ++drawn;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      without[c] += std::isnan(r.measures[c]);
+      if (columns[c].name == "predicted_error" && asked > 0.0 && r.measures[c] > asked) ++beyond, worst = std::max(worst, r.measures[c]);
+      if (columns[c].name == "outside_limits" && r.measures[c] > 0.0 && outside++ == 0) firstOutside = r.sample;
+    }
+  }
+  if (beyond > 0)
+    std::printf("  %d of %d samples: their plans expect errors beyond the %.3g %% asked, up to %.3g %% (column predicted_error)\n", beyond, drawn,
+                100.0 * asked, 100.0 * worst);
+  if (outside > 0)
+    std::printf(
+        "  %d of %d samples show what is beyond the scenario's 'limits', the first of them sample %d (column outside_limits): what plans lose there is not "
+        "known\n",
+        outside, drawn, firstOutside);
+  for (std::size_t c = 0; c + 2 < columns.size(); ++c)
+    if (without[c] > 0)
+      std::printf("  %s has no number in %d of %d samples: a target out of view has none, nor has the signal to noise of one whose pixels are full\n",
+                  columns[c].name.c_str(), without[c], drawn);
+}
+
 /// What is stored, in words; the exit code.
-int tellResults(const SweepWish& w, const Sweep& sweep, const SweepStore& store, double seconds) {
+int tellResults(const SweepWish& w, const Sweep& sweep, const SweepStore& store, const Simulation& sim, double seconds) {
   const std::vector<SweepRow> rows = store.rows();
   const auto failed = static_cast<std::size_t>(std::count_if(rows.begin(), rows.end(), [](const SweepRow& r) { return !r.why.empty(); }));
   std::printf("%zu of %zu samples in %s, %.3g s: sweep.sqlite, sweep.csv, sweep.html\n", rows.size(), sweep.samples.size(), w.out.c_str(), seconds);
@@ -112,6 +145,7 @@ int tellResults(const SweepWish& w, const Sweep& sweep, const SweepStore& store,
     const auto first = std::find_if(rows.begin(), rows.end(), [](const SweepRow& r) { return !r.why.empty(); });
     std::printf("  %zu could not be drawn; sample %d: %s\n", failed, first->sample, first->why.c_str());
   }
+  tellDoubts(store, rows, sim);
   return failed == rows.size() && failed > 0 ? 2 : 0;
 }
 
@@ -122,7 +156,7 @@ int finish(const SweepWish& w, const Sweep& sweep, const SweepStore& store, cons
     feedSinks(w.out, sweep, store, sim, [&](double share) { progress.phase("data set", share); });
     progress.finish();
   }
-  return tellResults(w, sweep, store, seconds);
+  return tellResults(w, sweep, store, sim, seconds);
 }
 
 /// Draws all of a part here, or of the whole sweep.

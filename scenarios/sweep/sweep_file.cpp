@@ -50,7 +50,11 @@ const ParameterTable& sweepTable() {
             "comparisons of two expressions, `$range < 3 * $visibility`: of samples that break one others are drawn (random), or none (all else; "
             "sobol_indices has no constraints)",
             1, 256),
-       list("measures", "what is taken of each picture", 1, 1024), list("sinks", "where frames go, as of scenarios", 1, 64),
+       list("measures",
+            "what is taken of each picture; besides `predicted_error`, the largest that a plan expects of it, and `outside_limits`, 1 where it shows what "
+            "plans were not made for",
+            1, 1024),
+       list("sinks", "where frames go, as of scenarios", 1, 64),
        withDefault(
            boolean("keep_frames", "each sample's frames stay in FOLDER/frames; with sinks, which are made of them, they do in any case", &Sweep::keepsFrames),
            "false")}};
@@ -89,6 +93,11 @@ class SweepReader {
     refuseUnused();
     if (const Value* constraints = r.find("constraints")) readConstraints(*constraints);
     if (const Value* measures = r.find("measures")) readMeasures(*measures);
+    Measure expected;
+    expected.kind = Measure::Kind::Expected;
+    expected.names = {"predicted_error", "outside_limits"};
+    expected.units = {"1", "1"};
+    sweep_.measures.push_back(std::move(expected));
     if (const Value* sinks = r.find("sinks")) sweep_.sinks = *sinks;
     makeDesign(r);
     sweep_.sha256 = sha256(sweep_.text);

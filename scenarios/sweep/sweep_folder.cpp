@@ -36,7 +36,15 @@ std::vector<const Sample*> missingSamples(const Sweep& sweep, const SweepStore& 
 void writeResults(const std::filesystem::path& folder, const Sweep& sweep, const SweepStore& store) {
   const std::vector<SweepRow> rows = store.rows();
   writeFileAtomically(folder / "sweep.csv", csvOf(store.identity(), rows));
-  writeSweepPage(folder / "sweep.html", store.identity(), rows, sweep.kind == Design::SobolIndices);
+  // What plans expect is no measure of the scene.
+  SweepIdentity shown = store.identity();
+  std::vector<SweepRow> shownRows = rows;
+  if (!shown.measures.empty() && shown.measures.back().kind == Measure::Kind::Expected) {
+    const std::size_t count = shown.measures.back().names.size();
+    shown.measures.pop_back();
+    for (SweepRow& r : shownRows) r.measures.resize(r.measures.size() - std::min(count, r.measures.size()));
+  }
+  writeSweepPage(folder / "sweep.html", shown, shownRows, sweep.kind == Design::SobolIndices);
 }
 
 void feedSinks(const std::filesystem::path& folder, const Sweep& sweep, const SweepStore& store, const Simulation& sim,

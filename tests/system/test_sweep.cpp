@@ -116,7 +116,7 @@ TEST_F(SweepCommand, MeasuresWhatIsThere) {
   const auto rows = table("out/sweep.csv");
   ASSERT_EQ(rows.size(), 13u);
   EXPECT_EQ(rows[0], (std::vector<std::string>{"sample", "seed", "range [m]", "temperature [K]", "seen [m]", "intensity [W/sr]", "counts [count]",
-                                               "peak [W/(m2 sr)]", "pixels [1]", "why"}));
+                                               "peak [W/(m2 sr)]", "pixels [1]", "predicted_error [1]", "outside_limits [1]", "why"}));
   for (std::size_t k = 1; k < rows.size(); ++k) {
     const auto at = [&](std::size_t c) { return std::stod(rows[k][c]); };
     // Table of targets and factor are the same number.
@@ -245,6 +245,20 @@ TEST_F(SweepCommand, Solves) {
   EXPECT_NE(none.output.find("30"), std::string::npos) << none.output;  // says what it is at the ends
   EXPECT_EQ(sweep("s.yaml --solve 'sen = 5' --over range").code, 2);
   EXPECT_EQ(sweep("s.yaml --solve 'seen = 5' --over rnge").code, 2);
+}
+
+TEST_F(SweepCommand, SaysWhatWasNotPlannedFor) {
+  std::string far = sweepText(8);
+  far.replace(far.find("within: [280 K, 340 K]"), 22, "within: [390 K, 420 K]");
+  far.replace(far.find("mean: 310 K"), 11, "mean: 401 K");
+  write("s.yaml", far);
+  const Result r = sweep("s.yaml --out out --workers 1");
+  ASSERT_EQ(r.code, 0) << r.output;
+  int outside = 0;
+  for (const auto& row : table("out/sweep.csv")) outside += row.size() > 8 && row[8] == "1";
+  EXPECT_GT(outside, 0);
+  EXPECT_LT(outside, 8);
+  EXPECT_NE(r.output.find(std::to_string(outside) + " of 8 samples show what is beyond the scenario's 'limits'"), std::string::npos) << r.output;
 }
 
 TEST_F(SweepCommand, MistakesAreOneLineAndLoseNothing) {

@@ -436,7 +436,7 @@ measures:
 }
 )yaml";
   const Sweep s = of(text);
-  ASSERT_EQ(s.measures.size(), 3u);
+  ASSERT_EQ(s.measures.size(), 4u);
   EXPECT_EQ(s.measures[0].kind, Measure::Kind::Truth);
   EXPECT_EQ(s.measures[0].target, "jet");
   EXPECT_EQ(s.measures[0].value, "mw.snr");

@@ -14,6 +14,8 @@ import _pitviper
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ._arguments import told_as_called
+
 Band = tuple
 
 
@@ -21,9 +23,15 @@ def _result(array: np.ndarray) -> Any:
     return float(array) if array.ndim == 0 else array
 
 
+@told_as_called
+
+
 def planck(wavelength_um: ArrayLike, temperature_K: ArrayLike, unit: str = "W") -> Any:
     """Spectral radiance of a black body, shape (temperatures..., wavelengths...) [W/(m2 sr um)], or [photon/(s m2 sr um)] by unit="photon/s"."""
     return _result(_pitviper.planck(wavelength_um, temperature_K, unit))
+
+
+@told_as_called
 
 
 def planck_slope(wavelength_um: ArrayLike, temperature_K: ArrayLike, unit: str = "W") -> Any:
@@ -31,9 +39,15 @@ def planck_slope(wavelength_um: ArrayLike, temperature_K: ArrayLike, unit: str =
     return _result(_pitviper.planck_slope(wavelength_um, temperature_K, unit))
 
 
+@told_as_called
+
+
 def band_radiance(temperature_K: ArrayLike, band: Band, unit: str = "W") -> Any:
     """Black body's radiance in a band, shape of the temperatures [W/(m2 sr)], [photon/(s m2 sr)]. Relative error below 1e-10."""
     return _result(_pitviper.band_radiance(temperature_K, band, unit))
+
+
+@told_as_called
 
 
 def band_radiance_slope(temperature_K: ArrayLike, band: Band, unit: str = "W") -> Any:
@@ -41,14 +55,23 @@ def band_radiance_slope(temperature_K: ArrayLike, band: Band, unit: str = "W") -
     return _result(_pitviper.band_radiance_slope(temperature_K, band, unit))
 
 
+@told_as_called
+
+
 def apparent_temperature(radiance: ArrayLike, band: Band, unit: str = "W") -> Any:
     """Temperature of the black body that has so much of a band [K], from 20 to 20000 K; 0 of less, 20000 of more. Relative error below 1e-8."""
     return _result(_pitviper.apparent_temperature(radiance, band, unit))
 
 
+@told_as_called
+
+
 def band_integral(wavelength_um: ArrayLike, values: ArrayLike, band: Band | None = None) -> float:
     """Integral of a table, linear between its wavelengths, times the band's response if one is given [unit of the values x um]. Exact."""
     return _pitviper.band_integral(wavelength_um, values, band)
+
+
+@told_as_called
 
 
 def band_mean(wavelength_um: ArrayLike, values: ArrayLike, band: Band) -> float:
@@ -78,17 +101,25 @@ class Surface:
         """What it changes with: {"temperature": bool, "low", "high"}; None: with nothing."""
         return self._held.states
 
+    @told_as_called
+
     def brdf(self, wavelength_um: ArrayLike, light: Sequence[float], views: Sequence[Sequence[float]]) -> np.ndarray:
         """BRDF [1/sr], shape (views, wavelengths). Directions are unit vectors from the surface, z its normal (`direction()`)."""
         return self._held.brdf(wavelength_um, tuple(light), [tuple(v) for v in views])
+
+    @told_as_called
 
     def reflectance(self, wavelength_um: ArrayLike, angle_rad: ArrayLike = 0.0) -> Any:
         """Directional-hemispherical reflectance, shape (angles..., wavelengths...)."""
         return _result(self._held.reflectance(wavelength_um, angle_rad))
 
+    @told_as_called
+
     def emissivity(self, wavelength_um: ArrayLike, angle_rad: ArrayLike = 0.0) -> Any:
         """Given, or by Kirchhoff what is neither reflected nor let through; shape as reflectance()."""
         return _result(self._held.emissivity(wavelength_um, angle_rad))
+
+    @told_as_called
 
     def transmittance(self, wavelength_um: ArrayLike, angle_rad: ArrayLike = 0.0) -> Any:
         """Of the whole layer that the surface stands for; shape as reflectance()."""
@@ -107,6 +138,9 @@ class Surface:
 
     def __repr__(self) -> str:
         return f"<pitviper.Surface {self.name}, {self.valid_um[0]:g} to {self.valid_um[1]:g} um>"
+
+
+@told_as_called
 
 
 def material(name: str, state: float | None = None) -> Surface:

@@ -12,6 +12,7 @@ import _pitviper
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ._arguments import told_as_called
 from .frame import Frame
 from .physics import Surface
 
@@ -140,6 +141,8 @@ class Scene:
             sets[key] = f"{key}={_yaml(value)}"
         self._held.change(list(sets.values()))
 
+    @told_as_called
+
     def plan_for(self, variations: Iterable[Mapping[str, Any]], time: float | None = None) -> None:
         """Plans from here on are made for these variations too, dicts of keys as of set(): within `limits`, pictures between them need no plan of their own.
         Without it a plan is made for the scenario's own times, and `limits` for ranges, temperatures and levels alone, not for other directions towards the
@@ -152,6 +155,8 @@ class Scene:
         return self._held.tree()
 
     # The world
+
+    @told_as_called
 
     def command(self, command: str, time: float | None = None, **keys: Any) -> None:
         """Commands the world with the words of a scenario's `commands`, from `time` on (unless given from now): no new plan, no new program.
@@ -172,12 +177,16 @@ class Scene:
         self._held.forget()
         self._now = None
 
+    @told_as_called
+
     def world(self, time: float | None = None) -> dict[str, Any]:
         """Where everything is: {"entities": {name: {position_m (east, north, up), orientation_wxyz, velocity_m_s, temperatures_K, there}}, "lights": ...,
         "cameras": ...}."""
         return self._held.world(self.now if time is None else float(time))
 
     # Pictures
+
+    @told_as_called
 
     def render(
         self,
@@ -202,14 +211,20 @@ class Scene:
         self._now = at
         return Frame(told.pop("frame"), told)
 
+    @told_as_called
+
     def next(self, camera: str | None = None, **wishes: Any) -> Frame:
         """The frame after the newest; the first, at first."""
         start, step, _ = self._held.time()
         return self.render(start if self._now is None else start + step * (round((self._now - start) / step) + 1), camera, **wishes)
 
+    @told_as_called
+
     def planned(self, camera: str | None = None) -> bool:
         """Whether the next picture waits for no plan."""
         return self._held.planned(camera, self.now)
+
+    @told_as_called
 
     def plan(self, camera: str | None = None, progress: Callable[[float], Any] | None = None) -> dict[str, Any]:
         """What its plan chose: wavelengths, tables, terms kept and left out, errors to expect, as `pitviper plan --json` tells them. Made where there is
@@ -225,9 +240,13 @@ class Scene:
         audit = self.render(time, camera, audit=True).audit
         return audit or {"pixels": 0, "errors": []}
 
+    @told_as_called
+
     def terms(self, column: int, row: int, time: float | None = None, camera: str | None = None) -> dict[str, Any]:
         """What a pixel's light is made of, by the reference: {layer: {unit, all, terms {part: value}, rest, apparent_temperature_K}}, before the sensor."""
         return self._held.terms(camera, self.now if time is None else float(time), column, row)
+
+    @told_as_called
 
     def spectrum(
         self, column: int, row: int, low_um: float, high_um: float, bins: int = 64, time: float | None = None, camera: str | None = None
@@ -237,19 +256,27 @@ class Scene:
 
     # Its air and materials
 
+    @told_as_called
+
     def path(self, start: Sequence[float], end: Sequence[float], wavelength_um: ArrayLike) -> dict[str, Any]:
         """The air between two places (east, north, up [m]), looking from the first: range_m, optical_depth, transmittance, path_radiance [W/(m2 sr um)], each
         of the wavelengths' shape, by the reference: what the air emits and scatters. A value is a mean over the width of the air's own data: 20 1/cm of library
         air, whose bands do not multiply along a path: sum over wavelengths (band_transmittance). Errors: InputError where the earth stands between."""
         return _pitviper.air_path(self._held, tuple(start), tuple(end), wavelength_um)
 
+    @told_as_called
+
     def sky(self, place: Sequence[float], direction: Sequence[float], wavelength_um: ArrayLike) -> np.ndarray:
         """Radiance of the sky in a direction, without the sun's disc [W/(m2 sr um)], of the wavelengths' shape."""
         return _pitviper.sky_radiance(self._held, tuple(place), tuple(direction), wavelength_um)
 
+    @told_as_called
+
     def band_transmittance(self, start: Sequence[float], end: Sequence[float], band: tuple, source_K: float) -> float:
         """Share of a black body's light that a band gets through the air between two places."""
         return _pitviper.band_transmittance(self._held, tuple(start), tuple(end), band, source_K)
+
+    @told_as_called
 
     def material(self, name: str, state: float | None = None) -> Surface:
         """One of its materials, as pitviper.material() has those of the library."""
