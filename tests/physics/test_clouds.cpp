@@ -130,12 +130,13 @@ TEST(Clouds, AreWhatPhotonsFind) {
         Case{"within a cloud", "{library: hazy_us76, clouds: [{type: stratus, optical_depth: 6}]}", 50, 700, 20},
         Case{"cirrus", "{library: clear_us76, clouds: [{type: cirrus, optical_depth: 1.5}]}", 35, 10, 50},
         Case{"two clouds", "{library: clear_us76, clouds: [{type: cirrus, optical_depth: 1}, {type: altostratus, optical_depth: 5}]}", 35, 10, 70}}) {
-    const Simulation sim = scene(skyScene(c.air, c.sun_deg, c.height_m, c.pitch_deg,
-                                          "ground: {material: {description: x, source: x, components: [{reflection: lambertian, reflectance: 0.3}]}}\n"));
+    Simulation sim = scene(skyScene(c.air, c.sun_deg, c.height_m, c.pitch_deg,
+                                    "ground: {material: {description: x, source: x, components: [{reflection: lambertian, reflectance: 0.3}]}}\n"));
+    std::erase_if(sim.cameras[0].outputs, [](const ChannelOutput& o) { return o.channel == "r"; });
     const Frame frame = renderFrame(sim);
     const double e = c.pitch_deg * kPi / 180.0, a = kPi / 6.0;
     const glm::dvec3 direction(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
-    for (const auto& [um, number] : {std::pair{0.55, size_t{0}}, {1.65, size_t{2}}}) {
+    for (const auto& [um, number] : {std::pair{0.55, size_t{0}}, {1.65, size_t{1}}}) {
       const PhotonWalk walk = layersOf(sim, um, 0.3);
       const double above = sim.air->opticalDepth(sim.air->node(um), sim.air->amounts({c.height_m, 1.0, sim.frame.earthRadius_m()}, physics::kFar));
       WalkDice dice(11);
