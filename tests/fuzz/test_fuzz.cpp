@@ -1,15 +1,17 @@
 // Damaged scenarios, library files and meshes: each must be read or refused in one line, without crash, hang or more than 1 GB.
-// PITVIPER_FUZZ sets the number of scenarios (default 1500; the full test is 100000), PITVIPER_FUZZ_MESHES of meshes (default a
-// fifteenth of that), PITVIPER_FUZZ_SEED the first seed.
+// PITVIPER_FUZZ sets the number of scenarios (default 600, with PITVIPER_LONG=1 1500; the full test is 100000), PITVIPER_FUZZ_MESHES of meshes (default a
+// fifteenth of that, at least 100), PITVIPER_FUZZ_SEED the first seed.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "sim/parameters/module_on_demand.hpp"
 #include "sim/scene/mesh_import.hpp"
 #include "tests/fuzz/fuzz_mesh.hpp"
 #include "tests/fuzz/fuzz_scenario.hpp"
+#include "tests/support/long_tests.hpp"
 
 namespace pitviper {
 namespace {
@@ -19,8 +21,8 @@ long long fromEnvironment(const char* name, long long otherwise) {
   return text == nullptr ? otherwise : std::atoll(text);
 }
 
-const int kScenarios = static_cast<int>(fromEnvironment("PITVIPER_FUZZ", 1500));
-const int kMeshes = static_cast<int>(fromEnvironment("PITVIPER_FUZZ_MESHES", kScenarios / 15));
+const int kScenarios = static_cast<int>(fromEnvironment("PITVIPER_FUZZ", test::runsLong() ? 1500 : 600));
+const int kMeshes = static_cast<int>(fromEnvironment("PITVIPER_FUZZ_MESHES", std::max(kScenarios / 15, 100)));
 const auto kSeed = static_cast<std::uint64_t>(fromEnvironment("PITVIPER_FUZZ_SEED", 1));
 
 /// Kept where something failed, with the inputs that did it.

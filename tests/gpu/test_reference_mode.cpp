@@ -78,7 +78,7 @@ cameras:
     position: [0 m, 0 m, 300 m]
     look_at: [0 m, 10 km, 1200 m]
     truth: [range, entity, normal, temperature]
-    channels: [{name: vis, response: {band: [0.5 um, 0.52 um]}}, {name: mw, response: {band: [4.1 um, 4.3 um]}}, {name: lw, response: {band: [9.2 um, 9.7 um]}}]
+    channels: [{name: vis, response: {band: [0.5 um, 0.51 um]}}, {name: mw, response: {band: [4.1 um, 4.3 um]}}, {name: lw, response: {band: [9.2 um, 9.7 um]}}]
 )";
 
 // Ground, bodies large, far and smaller than pixels, a pane, hot gas, a light in view, the sun, its light in the air, the sky.

@@ -16,10 +16,10 @@
 namespace pitviper::test {
 namespace {
 
-constexpr int kSize = 24;
+constexpr int kSize = 12;
 constexpr double kAsked = 0.01, kPixel_m = 0.1, kRange_m = 1000.0;
 /// Middle of the body [pixels from the upper left].
-constexpr double kColumn = 12.3, kRow = 11.8;
+constexpr double kColumn = 6.3, kRow = 5.8;
 /// A pixel that 32 x 32 rays know as well as this is on no outline: there the zoomed view's samples, few as the reference works each of them out, count.
 constexpr double kWellKnown = 1e-3;
 
@@ -34,7 +34,7 @@ std::string yaml(double nozzle_px, double sphere_px, double range_m) {
          " m, temperature: 1200 K, speed: 400 m/s, species: {co2: 0.08, h2o: 0.1, soot: 0.0001}}, length: " + text(std::max(2.0, 0.3 * nozzle_px)) +
          " m}]\nentities: [{name: s, shape: {model: sphere, radius: " + text(0.5 * sphere_px * pixel_m) +
          " m}, material: blackbody, temperature: 300 K, position: [" + text((kColumn - 0.5 * kSize) * pixel_m) + " m, " + text(range_m) + " m, " +
-         text(1000.0 + (0.5 * kSize - kRow) * pixel_m) + " m]}]\ncameras:\n  - name: c\n    film: {width: 24, height: 24}\n    field_of_view: " +
+         text(1000.0 + (0.5 * kSize - kRow) * pixel_m) + " m]}]\ncameras:\n  - name: c\n    film: {width: 12, height: 12}\n    field_of_view: " +
          text(glm::degrees(2.0 * std::atan(0.5 * kSize * kPixel_m / kRange_m))) +
          " deg\n    aperture: 10 mm\n    position: [0 m, 0 m, 1000 m]\n    heading: 0 deg\n"
          "    channels:\n      - {name: red, response: {band: [4.40 um, 4.41 um]}}\n      - {name: long, response: {band: [9.0 um, 9.01 um]}}\n";

@@ -53,6 +53,7 @@ TEST(CommandsInFlight, AFlareThatIsEjectedIsThatOfTheScenario) {
         EXPECT_LT(glm::length(a.lights[0] - b.lights[0]), 1e-9) << at << t;
       }
     }
+    if (std::string(at) != "0.5 s") continue;  // one picture tells that light is what is drawn
     const Frame a = renderFrame(asked, 15), b = renderFrame(written, 15);
     double worst = 0.0, most = 0.0;
     for (std::size_t p = 0; p < a.layers[0].pixels.size(); ++p) {

@@ -37,14 +37,19 @@ WalkAir evenAir(double depth, double albedo, double g, double sinSun, double gro
   return air;
 }
 
-double radianceOf(const PhotonWalk& walk, double depthAbove, const glm::dvec3& direction, int count) {
+/// By as many photons as tell it to a standard error, relative, at most `most`.
+double radianceOf(const PhotonWalk& walk, double depthAbove, const glm::dvec3& direction, double error, int most) {
+  constexpr int kLook = 2500;
   WalkDice dice(7);
-  double sum = 0.0;
-  for (int k = 0; k < count; ++k) {
+  double sum = 0.0, squares = 0.0;
+  for (int k = 1;; ++k) {
     const auto found = walk.from(depthAbove, direction, dice);
-    sum += found.once + found.again + found.ground;
+    const double v = found.once + found.again + found.ground;
+    sum += v, squares += v * v;
+    if (k % kLook != 0) continue;
+    const double mean = sum / k;
+    if (k >= most || squares / k - mean * mean <= k * error * error * mean * mean) return mean;
   }
-  return sum / count;
 }
 
 /// Chandrasekhar's H of isotropic scattering, H = 1 + m H(m) w/2 integral of H(x) / (m + x) dx, by iteration.
@@ -74,11 +79,11 @@ TEST(PhotonWalk, IsChandrasekharsHalfSpace) {
     for (const auto& [m0, m] : {std::pair{1.0, 1.0}, {0.6, 0.3}, {0.3, 0.8}}) {
       const PhotonWalk walk(evenAir(60.0, albedo, 0.0, m0, 0.0));
       const double expected = albedo / (4.0 * kPi) * m0 / (m + m0) * chandrasekharH(m, albedo) * chandrasekharH(m0, albedo),
-                   found = radianceOf(walk, 0.0, {std::sqrt(1.0 - m * m), 0.0, -m}, 100000);
+                   found = radianceOf(walk, 0.0, {std::sqrt(1.0 - m * m), 0.0, -m}, 0.004, 100000);
       worst = std::max(worst, std::abs(found / expected - 1.0));
     }
   bound("light sent back by a deep layer of isotropic scattering against Chandrasekhar's H, relative", worst, 0.015,
-        "100000 photons, layers of 0.3 of a depth at most");
+        "photons 0.4 %, of nine the worst at most 1.2; layers of 0.3 of a depth at most");
 }
 
 TEST(PhotonWalk, LosesNothing) {
@@ -210,7 +215,7 @@ glm::dvec3 towards(double heading_deg, double elevation_deg) {
 
 /// What 8, 12 and 16 streams lose of a line's radiance: against twice as many as are ever chosen, upwards, level and downwards, of the sun and thermal.
 std::vector<double> lostByStreams(const std::vector<std::string>& airs) {
-  const std::vector<double> um{0.42, 0.55, 0.9, 1.6, 4.0, 10.0};
+  const std::vector<double> um{0.42, 0.9, 4.0, 10.0};
   const std::vector<int> all{8, 12, 16};
   std::vector<double> worst(all.size(), 0.0);
   for (const std::string& air : airs)
@@ -220,7 +225,7 @@ std::vector<double> lostByStreams(const std::vector<std::string>& airs) {
       std::vector<Lines> some;
       for (int n : all) some.emplace_back(sim, um, n);
       for (double height : {2.0, 1000.0, 9000.0})
-        for (double heading : {0.0, 40.0, 120.0, 180.0})
+        for (double heading : {0.0, 40.0, 180.0})
           for (double pitch : {-80.0, -20.0, -3.0, 0.5, 10.0, 40.0, 85.0}) {
             const std::vector<double> right = exact.along({0, 0, height}, towards(heading, pitch));
             for (size_t n = 0; n < all.size(); ++n) {
@@ -263,7 +268,7 @@ TEST(DiffuseLight, IsWhatWalksAlongTheWholeLineFind) {
         const double up = pitch * kPi / 180.0, aside = 3.0 * kPi / 180.0, height = 10.0;
         const glm::dvec3 direction(std::cos(up) * std::cos(aside), std::cos(up) * std::sin(aside), std::sin(up));
         const double above = sim.air->opticalDepth(sim.air->node(um), sim.air->amounts({height, 1.0, sim.frame.earthRadius_m()}, physics::kFar));
-        const double found = radianceOf(walk, above, direction, 60000) * sim.sun->irradiance(um), drawn = at(frame.layers[number], frame, 1, 1);
+        const double found = radianceOf(walk, above, direction, 0.01, 60000) * sim.sun->irradiance(um), drawn = at(frame.layers[number], frame, 1, 1);
         std::printf("%s at %g deg, %g um: drawn %.4g, photons %.4g, %+.2f %%\n", air, pitch, um, drawn, found, 100.0 * (drawn / found - 1.0));
         worst = std::max(worst, std::abs(drawn / found - 1.0));
       }

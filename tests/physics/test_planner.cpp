@@ -108,7 +108,7 @@ TEST_F(Planner, WhatHarmonicsLoseTakesNoWavelengths) {
       planOf(scene("accuracy: 0.5 %\n" + sky +
                    "materials: {m: {components: [{reflection: microfacet, index: aluminium, roughness: 0.01}]}}\n"
                    "entities: [{name: b, shape: {model: sphere, radius: 20 m}, material: m, temperature: 300 K, position: [0 m, 1 km, 100 m]}]\n" +
-                   camera("{name: vis, response: {band: [0.5 um, 0.6 um]}}")));
+                   camera("{name: vis, response: {band: [0.5 um, 0.54 um]}}")));
   ASSERT_EQ(plan.parts.size(), 1u);
   EXPECT_GT(plan.parts[0].surroundings, 0.005) << "or the scene says nothing";
   EXPECT_LE(plan.parts[0].wavelengths, 0.005);
@@ -239,7 +239,7 @@ TEST_F(Planner, NodesOfKnownWavelengthsAreAveragesOfThem) {
   const auto sim = scene(
       "accuracy: 1 %\natmosphere: clear_us76\nsun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\nambient: {from: sky}\n"
       "plumes: [{name: p, position: [-5 m, 900 m, 100 m], direction: [1, 0, 0], engine: turbofan_military, length: 20 m, begin: -1 s}]\n" +
-      kGrey + kWall + camera(kMidwave + ", " + kLongwave));
+      kGrey + kWall + camera("{name: mw, response: {band: [4 um, 4.6 um]}}, {name: lw, response: {band: [8 um, 10 um]}}"));
   const Camera& camera = sim.cameras.at(0);
   const Plan plan = planOf(sim);
   SpectralSampling every;
@@ -267,7 +267,7 @@ TEST_F(Planner, NodesOfKnownWavelengthsAreAveragesOfThem) {
 // How bright a film is, and what harmonics lose, is told on few wavelengths of a channel: as all of them tell it.
 TEST_F(Planner, FewWavelengthsTellFloorsAndHarmonics) {
   const auto sim = scene("accuracy: 1 %\natmosphere: clear_us76\nsun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\nambient: {from: sky}\n" +
-                         kGrey + kWall + camera("{name: vis, response: {band: [0.5 um, 0.7 um]}}, " + kMidwave + ", " + kLongwave));
+                         kGrey + kWall + camera("{name: vis, response: {band: [0.5 um, 0.54 um]}}, " + kMidwave + ", " + kLongwave));
   const Camera& camera = sim.cameras.at(0);
   SpectralSampling every;
   every.reference = true;

@@ -23,12 +23,11 @@
 namespace pitviper::test {
 namespace {
 
-std::string ball(const std::string& component, const std::string& more, double kelvin = 0.0) {
+std::string ball(const std::string& component, const std::string& more, double kelvin = 0.0, int pixels = 41) {
   return "materials: {m: {components: [" + component + "]}}\n" + more +
          print("entities: [{name: b, shape: {model: sphere, radius: 1 m, segments: 96}, material: m, temperature: %g K}]\n", kelvin) +
-         "cameras: [{name: c, film: {width: 41, height: 41}, field_of_view: 11 deg, aperture: 20 mm, position: [10 m, 0 m, 0 m], look_at: b, channels: [{name: "
-         "a, "
-         "response: {band: [3.5 um, 4 um]}}]}]\n";
+         "cameras: [{name: c, film: {width: " + print("%d, height: %d", pixels, pixels) +
+         "}, field_of_view: 11 deg, aperture: 20 mm, position: [10 m, 0 m, 0 m], look_at: b, channels: [{name: a, response: {band: [3.5 um, 4 um]}}]}]\n";
 }
 const std::string kHalf = "ambient: {gradient: [{elevation: 0 deg, radiance: \"0 W/(m2 sr um)\"}, {elevation: 0 deg, radiance: \"2 W/(m2 sr um)\"}]}\n";
 const std::string kMatt = "{reflection: lambertian, reflectance: 0.6}", kMetal = "{reflection: microfacet, index: aluminium, roughness: 0.15}",
@@ -84,7 +83,7 @@ TEST(Surroundings, EnclosuresAreFlat) {
   for (const std::string& component : {kMatt, kMetal, kMirror, std::string("{reflection: microfacet, index: 1.45, roughness: 0.15, pigment: 0.6}"),
                                        std::string("{reflection: ward, reflectance: 0.6, roughness: 0.15}")})
     for (const char* accuracy : {"", "accuracy: 1 %\n", "accuracy: reference\n"}) {
-      const Frame f = renderFrame(scene(accuracy + ball(component, walls, 600.0)));
+      const Frame f = renderFrame(scene(accuracy + ball(component, walls, 600.0, 21)));
       double worst = 0.0;
       for (float x : layer(f, "a.radiance").pixels) worst = std::max(worst, std::abs(static_cast<double>(x) / blackBodyBand(3.5, 4.0, 600.0) - 1.0));
       bound("off the black body in an enclosure by directions, " + component.substr(0, 60) + (*accuracy ? std::string(", ") + accuracy : ""), worst, 1e-4,
@@ -235,11 +234,13 @@ TEST(SurroundingsOnGpu, AgainstDouble) {
     for (const std::string& component :
          {kMatt, kMetal, std::string("{reflection: microfacet, index: water, roughness: 0.05, slopes: normal}"),
           std::string("{reflection: lambertian, reflectance: 0.2, modifier: {rows: [[1], [0.5]]}}, {reflection: phong, reflectance: 0.4, exponent: 60}")}) {
+      // The sky's light takes long to work out, and is read as a map's: by a lobe and by rows of a texture.
+      if (around == kSky && component != kMetal && component.find("rows") == std::string::npos) continue;
       // Seen from a height at which no row of pixels mirrors the horizon itself.
       std::string text = ball(component, "", 300.0);
       text.replace(text.find("[10 m, 0 m, 0 m]"), 16, "[10 m, 0 m, 1.37 m]");
-      const Worst w = compare(scene("accuracy: none\n" + around + text), 1);
-      EXPECT_GT(w.covered, 700);
+      const Worst w = compare(scene("accuracy: none\n" + around + text), 2);
+      EXPECT_GT(w.covered, 175);
       bound("light from all around, GPU against CPU double, 99 of 100 pixels, " + around.substr(0, 30) + ", " + component.substr(0, 60), w.percentile99, most,
             why);
     }

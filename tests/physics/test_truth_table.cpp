@@ -188,10 +188,12 @@ TEST(TruthTable, TermsAddUp) {
 }
 
 /// A still camera looks east at what burns 2 km away and 100 m up.
-std::string watch(const std::string& more = "", const std::string& heading = "heading: 90 deg") {
+const std::string kMidwave = "{name: mw, response: {band: [3 um, 5 um]}}";
+std::string watch(const std::string& more = "", const std::string& heading = "heading: 90 deg",
+                  const std::string& channels = kMidwave + ", {name: lw, response: {band: [8 um, 12 um]}}") {
   return "cameras: [{name: c, film: {width: 64, height: 48, pitch: 15 um}, focal_length: 60 mm, aperture: 25 mm, exposure: 4 ms, truth: [targets], position: "
          "[0 m, 0 m, 100 m], " +
-         heading + ", " + more + "channels: [{name: mw, response: {band: [3 um, 5 um]}}, {name: lw, response: {band: [8 um, 12 um]}}]}]\n";
+         heading + ", " + more + "channels: [" + channels + "]}]\n";
 }
 
 bool hasRow(const Frame& f, const std::string& name) {
@@ -257,7 +259,7 @@ TEST(TruthTable, PlumesAndFlaresAreWhatThePictureHas) {
                                                             ", speed: 0 m/s, time: 0.2 s, smoke: false, light: false}]\n"
                                                       : "");
       const auto sumOf = [&](const std::string& text, Frame* frame) {
-        const Simulation sim = scene(world + text + watch("samples: 2, "));
+        const Simulation sim = scene(world + text + watch("samples: 2, ", "heading: 90 deg", kMidwave));
         const Frame f = renderFrame(sim);
         const auto sr = sim.cameras[0].pinhole.solidAngles().plain_sr;
         double all = 0.0;
@@ -287,7 +289,8 @@ TEST(TruthTable, PlumesHaveSharesRatesAndNoise) {
                     burning =
                         "plumes: [{name: jet, on: jet, engine: turbofan_military, length: 20 m}]\nflares: [{name: f, type: mtv, position: [2 km, 0 m, 105 m], "
                         "speed: 0 m/s, time: 0.2 s, smoke: false}]\n";
-  const Frame f = renderFrame(scene("accuracy: 10 %\n" + jet + burning + watch("stages: [{stage: detector, full_well: 7e6, read_noise: 300}], ")));
+  const Frame f = renderFrame(
+      scene("accuracy: 10 %\n" + jet + burning + watch("stages: [{stage: detector, full_well: 7e6, read_noise: 300}], ", "heading: 90 deg", kMidwave)));
   const TargetRow& plume = row(f, "jet_plume");
   EXPECT_EQ(row(f, "jet").kind, "body");
   figure("turning of the line of sight to a nozzle [rad/s]", plume.sightRight_rad_s, 0.05, 1e-3, "100 m/s at 2 km");
@@ -308,9 +311,10 @@ TEST(TruthTable, PlumesHaveSharesRatesAndNoise) {
          row(hidden, "jet_plume").visible / row(open, "jet_plume").visible, 0.01,
          "the share is by what it sends, here past the ball that carries it too; 1 % asked");
   EXPECT_LT(plume.visible, 1.0);
-  const Frame cut = renderFrame(scene("accuracy: 10 %\n" + jet + burning + watch("", "heading: 90.229 deg")));  // the film's edge is 0.46 degrees away
+  const Frame cut =
+      renderFrame(scene("accuracy: 10 %\n" + jet + burning + watch("", "heading: 90.229 deg", kMidwave)));  // the film's edge is 0.46 degrees away
   EXPECT_LE(row(cut, "jet_plume").visible, 1.0);
-  const Frame behind = renderFrame(scene("accuracy: 10 %\n" + jet + burning + watch("", "heading: 270 deg")));
+  const Frame behind = renderFrame(scene("accuracy: 10 %\n" + jet + burning + watch("", "heading: 270 deg", kMidwave)));
   EXPECT_EQ(row(behind, "f").visible, 0.0);
   EXPECT_EQ(row(behind, "f").channels[0].own, 0.0);
   EXPECT_TRUE(std::isnan(row(behind, "f").column));

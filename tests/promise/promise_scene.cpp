@@ -17,9 +17,9 @@
 namespace pitviper::test {
 namespace {
 
-/// Both sides draw small bodies by views of so many samples across. The reference works every one of them out: with the usual 256 that is some hundred
-/// times the film.
-constexpr int kZoomedSamples = 32;
+/// Both sides draw small bodies by views of so many samples across. The reference works every one of them out: with the usual 256 that is some
+/// hundred times the film.
+constexpr int kZoomedSamples = 16;
 
 double secondsSince(std::chrono::steady_clock::time_point start) { return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(); }
 

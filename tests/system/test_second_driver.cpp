@@ -7,6 +7,7 @@
 
 #include "sim/image/exr.hpp"
 #include "tests/support/figures.hpp"
+#include "tests/support/long_tests.hpp"
 #include "tests/support/run_program.hpp"
 #include "tests/support/temporary_folder.hpp"
 
@@ -42,11 +43,12 @@ const std::string kThrough =
     kChannels + "}]\n";
 
 struct SecondDriver : testing::Test {
-  /// Draws the first frame and gives all pictures of it.
+  /// Draws the first frame and gives all pictures of it. Both drivers draw by the same plan; their programs lie beside each other in the cache.
   std::vector<fs::path> draw(const std::string& scenario, const std::string& out, const std::string& environment) const {
     const std::string there = folder.path().string();
-    const Result r = run("cd " + there + " && " + environment + " XDG_CACHE_HOME=" + there + "/cache_" + out + " PITVIPER_HOME=" + PITVIPER_SOURCE_DIR + " " +
-                         PITVIPER_PROGRAM + " run " + scenario + " --frames 0:0 --overwrite --out " + out);
+    const Result r =
+        run("cd " + there + " && " + environment + " XDG_CACHE_HOME=" + there + "/cache PITVIPER_HOME=" + PITVIPER_SOURCE_DIR + " " + PITVIPER_PROGRAM +
+            " run " + scenario + " --frames 0:0 --set accuracy='5 %' --set cameras.0.film.width=40 --set cameras.0.film.height=32 --overwrite --out " + out);
     EXPECT_EQ(r.code, 0) << scenario << " " << out << "\n" << r.output;
     EXPECT_EQ(r.output.find("zink") != std::string::npos, out == "second") << r.output;
     std::vector<fs::path> all;
@@ -65,8 +67,11 @@ TEST_F(SecondDriver, DrawsTheSameByStandardPrograms) {
   folder.put("lit.yaml", kLit);
   folder.put("through.yaml", kThrough);
   const std::string shipped = std::string(PITVIPER_SOURCE_DIR) + "/scenarios/", here = folder.path().string();
-  for (const std::string& scenario : {std::string("lit.yaml"), std::string("through.yaml"), shipped + "jet_and_sky.yaml", shipped + "far_jet.yaml",
-                                      shipped + "metamers.yaml"}) {
+  // Few pixels of the same fields.
+  for (const std::string& scenario : {std::string("lit.yaml"), std::string("through.yaml"), shipped + "jet_and_sky.yaml",
+                                      shipped + "far_jet.yaml --set cameras.0.film.pitch='154 um'", shipped + "metamers.yaml"}) {
+    // Hills and a small jet: the programs of the first and the third.
+    if (scenario.find("far_jet") != std::string::npos && !runsLong()) continue;
     fs::remove_all(folder.path() / "first");
     fs::remove_all(folder.path() / "second");
     const auto first = draw(scenario, "first", "MESA_SHADER_DUMP_PATH=" + here);
@@ -85,7 +90,8 @@ TEST_F(SecondDriver, DrawsTheSameByStandardPrograms) {
         for (std::size_t i = 0; i < p.size(); ++i) worst = std::max(worst, std::abs(double(q[i]) - p[i]) / std::max(double(p[i]), 1e-3 * most));
       }
     }
-    bound("pictures by a second driver, " + fs::path(scenario).stem().string() + ", relative", worst, 3e-5, "single precision, sums of 340 narrow groups");
+    bound("pictures by a second driver, " + fs::path(scenario.substr(0, scenario.find(' '))).stem().string() + ", relative", worst, 3e-5,
+          "single precision, sums of 340 narrow groups");
   }
   int count = 0;
   for (const auto& f : fs::directory_iterator(folder.path())) {
