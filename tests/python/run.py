@@ -9,6 +9,7 @@ or are not there.
 """
 
 import argparse
+import faulthandler
 import os
 import pathlib
 import sys
@@ -19,6 +20,8 @@ from xml.sax.saxutils import quoteattr
 
 here = pathlib.Path(__file__).resolve().parent
 root = here.parents[1]
+
+HANGS_S = 1800
 
 
 class Outcome:
@@ -47,10 +50,13 @@ class Results(unittest.TestResult):
 
     def startTest(self, test):
         super().startTest(test)
+        # What waits for ever ends with its place, whatever thread it is in; no machine is that slow.
+        faulthandler.dump_traceback_later(HANGS_S, exit=True)
         self.outcome(test).seconds = -time.monotonic()
 
     def stopTest(self, test):
         super().stopTest(test)
+        faulthandler.cancel_dump_traceback_later()
         self.outcome(test).seconds += time.monotonic()
 
     def fails(self, test, error, what=""):

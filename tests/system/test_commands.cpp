@@ -11,7 +11,6 @@
 #include <sstream>
 
 #include "sim/image/exr.hpp"
-#include "tests/support/long_tests.hpp"
 
 namespace {
 
@@ -120,10 +119,6 @@ TEST_F(Commands, ExrinfoReadsAFrame) {
 TEST_F(Commands, EveryShippedScenarioIsGood) {
   for (const auto& entry : fs::directory_iterator(std::string(PITVIPER_SOURCE_DIR) + "/scenarios"))
     if (entry.path().extension() == ".yaml") {
-      // What changes a light or a few bands of another is read by the fuzz tests too.
-      const std::string name = entry.path().stem();
-      if (!pitviper::test::runsLong() && (name == "crossing_jet_alone" || name == "metamers_incandescent" || name == "metamers_sodium" || name == "sixteen"))
-        continue;
       // What plans are worth at what a scenario asks for is for others to see: this takes a quarter of the time.
       const Result r = pitviper("check " + entry.path().string() + " --set accuracy='10 %'");
       EXPECT_EQ(r.code, 0) << r.output;
