@@ -321,15 +321,25 @@ TEST(MovingScenarios, ReadmesExamplesAreOnes) {
   EXPECT_GT(advance(motion, 1.0).temperatures_K[2][0], 300.0);
 }
 
-// The README's script of random poses, in three rows a frame: at each frame's time the body is there, turned so, and flies along its nose.
+// Random poses, in three rows a frame: at each frame's time the body is there, turned so, and flies along its nose.
 TEST(MovingScenarios, PosesOfYourOwnDice) {
-  std::ifstream in(std::string(PITVIPER_SOURCE_DIR) + "/scenarios/README.md");
-  std::stringstream all;
-  all << in.rdbuf();
-  const std::string text = all.str(), mark = "```yaml labelled\n";
-  const size_t from = text.find(mark);
-  ASSERT_NE(from, std::string::npos);
-  std::string yaml = text.substr(from + mark.size(), text.find("```", from + mark.size()) - from - mark.size());
+  std::string yaml =
+      "time: {rate: 1 Hz, frames: 40}\n"
+      "accuracy: 1 %\n"
+      "atmosphere: clear_us76\n"
+      "entities:\n"
+      "  - {name: jet, shape: {model: jet}, material: grey_aircraft_paint, temperature: {recovery: turbulent}, motion: {model: csv, file: poses.csv}}\n"
+      "plumes:\n"
+      "  - {name: exhaust, on: jet, position: [-7.3 m, 0 m, 0 m], engine: turbofan_military}\n"
+      "cameras:\n"
+      "  - name: eye\n"
+      "    film: {width: 160, height: 120, pitch: 20 um}\n"
+      "    field_of_view: 5 deg\n"
+      "    aperture: 30 mm\n"
+      "    position: [0 m, 0 m, 100 m]\n"
+      "    heading: 90 deg\n"
+      "    truth: [range, entity, targets]\n"
+      "    channels: [{name: mw, response: {band: [3.7 um, 4.8 um]}}]\n";
   const TemporaryFolder folder;
   struct Row {
     glm::dvec3 place;
