@@ -36,7 +36,7 @@ const char* const kScene =
     "    samples: 4\n"
     "    field_of_view: 6 deg\n"
     "    aperture: 20 mm\n"
-    "    exposure: 1 ms\n"
+    "    exposure: 0.02 ms\n"
     "    truth: [range, entity, temperature, targets]\n"
     "    channels: [{name: mw, response: {band: [3.7 um, 4.8 um]}, quantum_efficiency: 0.8, output: [counts, radiance]}]\n"
     "    stages: [{stage: detector, full_well: 5e6, bits: 14, read_noise: 500}]\n";
