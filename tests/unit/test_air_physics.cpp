@@ -12,6 +12,7 @@
 #include "sim/world/world.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/print.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace pitviper::test {
@@ -36,18 +37,6 @@ double mean(const Values& values) {
   for (const double v : values) sum += v / static_cast<double>(values.size());
   return sum;
 }
-
-template <class F>
-std::string refusal(const F& call) {
-  try {
-    call();
-  } catch (const UserError& e) {
-    return e.what();
-  }
-  return "";
-}
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 // Law: tau = exp(-k R) (Beer and Lambert), L = B(T) (1 - tau); the sky of air without end is its black body.
 TEST(AirPhysics, AirThatIsTheSameEverywhere) {
@@ -232,8 +221,8 @@ TEST(AirPhysics, WhatIsRefused) {
   const Simulation sim = under("atmosphere: hazy_us76\nground: {material: soil, temperature: 290 K}\n");
   const Values um{4.0};
   const auto why = [](const auto& call, const char* part) {
-    const std::string said = refusal(call);
-    EXPECT_TRUE(has(said, part)) << "'" << said << "' has not '" << part << "'";
+    const std::string said = refusalOf(call);
+    EXPECT_TRUE(holds(said, part)) << "'" << said << "' has not '" << part << "'";
   };
   why([&] { pathThrough(sim, {0, 0, 10}, {0, 6e4, -270}, um); }, "path(): the earth stands between the two places");
   why([&] { pathThrough(sim, {0, 0, 10}, {0, 6e4, -270}, um); }, "raise one of the places");

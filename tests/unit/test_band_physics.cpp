@@ -8,24 +8,13 @@
 #include "sim/radiometry/constants.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/print.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace pitviper::test {
 namespace {
 
 using Values = std::vector<double>;
-
-template <class F>
-std::string refusal(const F& call) {
-  try {
-    call();
-  } catch (const UserError& e) {
-    return e.what();
-  }
-  return "";
-}
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 // All of what a black body sends: pi L = sigma T^4; photons: pi L = 4 pi zeta(3) k^3 / (h^3 c^2) T^3. Over thirteen octaves at once.
 TEST(BandPhysics, AllOfABlackBody) {
@@ -129,8 +118,8 @@ TEST(BandPhysics, WhatIsRefused) {
   const Values um{3.0, 4.0}, two{1.0, 1.0};
   const Responsivity band(3.0, 4.0);
   const auto why = [](const auto& call, const char* part) {
-    const std::string said = refusal(call);
-    EXPECT_TRUE(has(said, part)) << "'" << said << "' has not '" << part << "'";
+    const std::string said = refusalOf(call);
+    EXPECT_TRUE(holds(said, part)) << "'" << said << "' has not '" << part << "'";
   };
   why([&] { planckRadiance(Values{3.0, NAN}, two); }, "planck_radiance(): wavelength_um[1] is nan; expected 0.1 to 1000 um");
   why([&] { planckRadiance(Values{-3.0}, two); }, "wavelength_um[0] is -3");

@@ -11,6 +11,7 @@
 #include "sim/radiometry/constants.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/numbers.hpp"
+#include "tests/support/refusal.hpp"
 
 namespace pitviper::test {
 namespace {
@@ -21,18 +22,6 @@ double normal(std::uint64_t seed) {
   const double radius = std::sqrt(-2.0 * std::log(1.0 - numbers(0.0, 1.0)));
   return radius * std::cos(2.0 * kPi * numbers(0.0, 1.0));
 }
-
-template <class F>
-std::string refusal(const F& call) {
-  try {
-    call();
-  } catch (const UserError& e) {
-    return e.what();
-  }
-  return "";
-}
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 // Published quantiles (Abramowitz and Stegun, table 26.10; all digits that it has).
 TEST(Solve, StudentsQuantiles) {
@@ -85,7 +74,7 @@ TEST(Solve, CloseToAnEnd) {
     SolveWish wish = lineWish(run);
     wish.target = 3.8;
     Solution s;
-    if (!refusal([&] { s = solve(line, wish); }).empty()) continue;
+    if (!refusalOf([&] { s = solve(line, wish); }).empty()) continue;
     ++answered;
     held += s.low95 <= 0.6 && 0.6 <= s.high95;
     EXPECT_GE(s.low95, 0.0);
@@ -224,25 +213,25 @@ TEST(Solve, WhatItRefuses) {
   const auto quiet = [](double x, std::uint64_t) { return 10.0 / x; };
   SolveWish wish;
   wish.target = 5.0, wish.low = 4.0, wish.high = 10.0, wish.factor = "range", wish.measure = "snr";
-  const std::string sided = refusal([&] { solve(quiet, wish); });
-  EXPECT_TRUE(has(sided, "snr is 2.5 at range = 4 and 1 at range = 10, both below the 5 asked for")) << sided;
-  EXPECT_TRUE(has(sided, "fix: widen the range")) << sided;
+  const std::string sided = refusalOf([&] { solve(quiet, wish); });
+  EXPECT_TRUE(holds(sided, "snr is 2.5 at range = 4 and 1 at range = 10, both below the 5 asked for")) << sided;
+  EXPECT_TRUE(holds(sided, "fix: widen the range")) << sided;
   // With noise what it is said with.
-  const std::string noisy = refusal([&] { solve([](double x, std::uint64_t seed) { return 10.0 / x + 0.1 * normal(seed); }, wish); });
-  EXPECT_TRUE(has(noisy, " +- 0.0") && has(noisy, " at range = 4 and ") && has(noisy, "both below")) << noisy;
+  const std::string noisy = refusalOf([&] { solve([](double x, std::uint64_t seed) { return 10.0 / x + 0.1 * normal(seed); }, wish); });
+  EXPECT_TRUE(holds(noisy, " +- 0.0") && holds(noisy, " at range = 4 and ") && holds(noisy, "both below")) << noisy;
   wish.low = 1.0;
-  const std::string none = refusal([&] { solve([](double x, std::uint64_t) { return x < 7.0 ? 10.0 / x : NAN; }, wish); });
-  EXPECT_TRUE(has(none, "snr is nan at range = 10")) << none;
+  const std::string none = refusalOf([&] { solve([](double x, std::uint64_t) { return x < 7.0 ? 10.0 / x : NAN; }, wish); });
+  EXPECT_TRUE(holds(none, "snr is nan at range = 10")) << none;
   const auto wrong = [&](auto change) {
     SolveWish w = wish;
     change(w);
-    return refusal([&] { solve(quiet, w); });
+    return refusalOf([&] { solve(quiet, w); });
   };
-  EXPECT_TRUE(has(wrong([](SolveWish& w) { w.high = 1.0; }), "range from 1 to 1"));
-  EXPECT_TRUE(has(wrong([](SolveWish& w) { w.low = 0.0, w.logarithmic = true; }), "ends above 0"));
-  EXPECT_TRUE(has(wrong([](SolveWish& w) { w.repeats = 3; }), "3 repeats"));
-  EXPECT_TRUE(has(wrong([](SolveWish& w) { w.tolerance = 0.0; }), "a tolerance of 0"));
-  EXPECT_TRUE(has(wrong([](SolveWish& w) { w.target = NAN; }), "a target of nan"));
+  EXPECT_TRUE(holds(wrong([](SolveWish& w) { w.high = 1.0; }), "range from 1 to 1"));
+  EXPECT_TRUE(holds(wrong([](SolveWish& w) { w.low = 0.0, w.logarithmic = true; }), "ends above 0"));
+  EXPECT_TRUE(holds(wrong([](SolveWish& w) { w.repeats = 3; }), "3 repeats"));
+  EXPECT_TRUE(holds(wrong([](SolveWish& w) { w.tolerance = 0.0; }), "a tolerance of 0"));
+  EXPECT_TRUE(holds(wrong([](SolveWish& w) { w.target = NAN; }), "a target of nan"));
 }
 
 TEST(Goal, IsAMeasureAndAValue) {
@@ -255,15 +244,15 @@ TEST(Goal, IsAMeasureAndAValue) {
   EXPECT_EQ(unit.value, 0.031);
   EXPECT_EQ(unit.unit, "W/(m2 sr)");
   EXPECT_EQ(parseGoal("contrast = -0.5 K").value, -0.5);
-  const auto why = [](const char* text) { return refusal([&] { parseGoal(text); }); };
-  EXPECT_TRUE(has(why("snr"), "--solve: 'snr' has no '='"));
-  EXPECT_TRUE(has(why("snr == 5"), "more than one '='"));
-  EXPECT_TRUE(has(why("snr > 5"), "asks for '>'"));
-  EXPECT_TRUE(has(why("= 5"), "names no measure"));
-  EXPECT_TRUE(has(why("snr ="), "has no number"));
-  EXPECT_TRUE(has(why("snr = high"), "has no number"));
-  EXPECT_TRUE(has(why("range = 5 parsecs"), "'parsecs' is no unit"));
-  EXPECT_TRUE(has(why(""), "has no '='"));
+  const auto why = [](const char* text) { return refusalOf([&] { parseGoal(text); }); };
+  EXPECT_TRUE(holds(why("snr"), "--solve: 'snr' has no '='"));
+  EXPECT_TRUE(holds(why("snr == 5"), "more than one '='"));
+  EXPECT_TRUE(holds(why("snr > 5"), "asks for '>'"));
+  EXPECT_TRUE(holds(why("= 5"), "names no measure"));
+  EXPECT_TRUE(holds(why("snr ="), "has no number"));
+  EXPECT_TRUE(holds(why("snr = high"), "has no number"));
+  EXPECT_TRUE(holds(why("range = 5 parsecs"), "'parsecs' is no unit"));
+  EXPECT_TRUE(holds(why(""), "has no '='"));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "sim/radiometry/quadrature.hpp"
 #include "tests/support/figures.hpp"
 #include "tests/support/numbers.hpp"
+#include "tests/support/refusal.hpp"
 #include "tests/support/scene_builder.hpp"
 
 namespace pitviper::test {
@@ -23,18 +24,6 @@ Libraries libraries() {
 }
 
 SurfacePhysics surface(const std::string& name) { return SurfacePhysics(materialOf(name, libraries())); }
-
-template <class F>
-std::string refusal(const F& call) {
-  try {
-    call();
-  } catch (const UserError& e) {
-    return e.what();
-  }
-  return "";
-}
-
-bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 /// Of a kind each: a grey diffuser, diffuser and facets, facets of a metal, a coating, a sea.
 constexpr const char* kOpaque[] = {"white_lambertian", "black_gloss_paint", "grey_aircraft_paint", "copper", "anodised_titanium", "sea_water"};
@@ -188,8 +177,8 @@ TEST(SurfacePhysics, WhatIsRefused) {
   const Simulation sim = states();
   const SurfacePhysics grey(materialOf(sim, "grey")), copper = surface("copper");
   const auto why = [](const auto& call, const char* part) {
-    const std::string said = refusal(call);
-    EXPECT_TRUE(has(said, part)) << "'" << said << "' has not '" << part << "'";
+    const std::string said = refusalOf(call);
+    EXPECT_TRUE(holds(said, part)) << "'" << said << "' has not '" << part << "'";
   };
   const std::vector<glm::dvec3> up{directionAt(0.0)};
   why([&] { materialOf(sim, "gray"); }, "there is no material 'gray'");
