@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <iterator>
 #include <optional>
 #include <string_view>
 
@@ -48,12 +47,6 @@ PartChoice readPartChoice(const std::string& text, const Location& where) {
                     "K/N, whole numbers: part K, from 0 to N - 1, of N parts, 1 to " + std::to_string(kMostParts),
                     "write 0/40 for the first of 40, 39/40 for the last");
   return *choice;
-}
-
-std::vector<Sample> samplesOf(const PartChoice& choice, const std::vector<Sample>& all) {
-  std::vector<Sample> own;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(own), [&](const Sample& s) { return choice.has(s.number); });
-  return own;
 }
 
 fs::path partFile(const fs::path& folder, const PartChoice& choice) {

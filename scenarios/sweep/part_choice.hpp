@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "scenarios/sweep/sweep.hpp"
 #include "sim/parameters/error.hpp"
 
 namespace pitviper {
@@ -25,9 +24,6 @@ struct PartChoice {
 
 /// Of "3/40". Errors: UserError.
 PartChoice readPartChoice(const std::string& text, const Location& where);
-
-/// Its samples among all, in their order.
-std::vector<Sample> samplesOf(const PartChoice& choice, const std::vector<Sample>& all);
 
 /// FOLDER/parts/part_3_of_40.sqlite
 std::filesystem::path partFile(const std::filesystem::path& folder, const PartChoice& choice);

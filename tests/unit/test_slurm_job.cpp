@@ -82,16 +82,11 @@ TEST(PartChoice, IsReadAndRefused) {
   }
 }
 
-std::vector<Sample> samplesNumbered(const std::vector<int>& numbers) {
-  std::vector<Sample> all(numbers.size());
-  for (std::size_t i = 0; i < all.size(); ++i) all[i].number = numbers[i];
-  return all;
-}
-
-std::vector<int> sampleNumbers(const std::vector<Sample>& samples) {
-  std::vector<int> numbers;
-  for (const Sample& s : samples) numbers.push_back(s.number);
-  return numbers;
+std::vector<int> numbersOf(const PartChoice& choice, const std::vector<int>& all) {
+  std::vector<int> own;
+  for (const int number : all)
+    if (choice.has(number)) own.push_back(number);
+  return own;
 }
 
 std::vector<int> countedTo(int count) {
@@ -107,7 +102,7 @@ TEST(PartChoice, EverySampleIsOfOnePart) {
     std::multiset<int> all;
     std::size_t fewest = 1000, most = 0;
     for (int part = 0; part < of; ++part) {
-      const auto own = sampleNumbers(samplesOf({part, of}, samplesNumbered(each)));
+      const auto own = numbersOf({part, of}, each);
       all.insert(own.begin(), own.end());
       fewest = std::min(fewest, own.size()), most = std::max(most, own.size());
     }
@@ -115,7 +110,7 @@ TEST(PartChoice, EverySampleIsOfOnePart) {
     EXPECT_EQ(std::vector<int>(all.begin(), all.end()), each);
   }
   // A sample is of its part by its number, whichever others there are.
-  EXPECT_EQ(sampleNumbers(samplesOf({3, 40}, samplesNumbered({3, 4, 40, 83, 84, 123, 2147483643}))), (std::vector<int>{3, 83, 123, 2147483643}));
+  EXPECT_EQ(numbersOf({3, 40}, {3, 4, 40, 83, 84, 123, 2147483643}), (std::vector<int>{3, 83, 123, 2147483643}));
 }
 
 TEST(PartChoice, FilesOfPartsAreFound) {
