@@ -103,6 +103,7 @@ void TruthMeter::addField(TargetRow& row, std::size_t f, const WorldState& state
     std::vector<double> own, total, contrast, ofCell;  ///< the last by channel and cell
     double seen_sr = 0.0;
     std::vector<Seen> lines = {};
+    std::vector<TargetLine> counted = {};
   };
   std::vector<Row> rows(static_cast<std::size_t>(grid.height));
   eachPiece(grid.height, [&](int y) {
@@ -141,11 +142,14 @@ void TruthMeter::addField(TargetRow& row, std::size_t f, const WorldState& state
           seen.own = channelsOf(its);
           if (seen.whole.empty()) seen.whole = seen.own;
           const std::vector<double> without = slotsOf(plan_, sum.withoutField());
+          TargetLine counted{ReferenceShader::things(line.hits), through.at, seen.sr, all};
           for (std::size_t s = 0; s < slots; ++s) {
+            counted.contrast[s] -= without[s];
             here.own[s] += seen.sr * its[s];
             here.total[s] += seen.sr * all[s];
-            here.contrast[s] += seen.sr * (all[s] - without[s]);
+            here.contrast[s] += seen.sr * counted.contrast[s];
           }
+          here.counted.push_back(std::move(counted));
           for (std::size_t c = 0; c < channels; ++c)
             here.ofCell[c * static_cast<std::size_t>(grid.width) + static_cast<std::size_t>(x)] += seen.sr * (all[slotOf(c)] - without[slotOf(c)]);
           here.seen_sr += seen.sr;
@@ -194,6 +198,23 @@ void TruthMeter::addField(TargetRow& row, std::size_t f, const WorldState& state
     const double most = largestSum(cells, grid.width, grid.height, across);
     faces_sr.push_back(most > 0.0 ? std::abs(contrast[slotOf(c)]) / most * square_sr : 0.0);
   }
+  std::vector<TargetLine> lines;
+  for (const Row& r : rows) lines.insert(lines.end(), r.counted.begin(), r.counted.end());
+  lost_.addTo({&own, &total, &contrast}, lines, [&](const glm::dvec2& at, const Plan& plan, const std::shared_ptr<const NodeSpectra>& spectra) {
+    ReferenceShader all(simulation_, plan, grid, state, present_, spectra);
+    if (coarse) all.setAirPlaces(kUsualPlaces);
+    NodeSum sum(*spectra);
+    sum.watchField(static_cast<int>(f));
+    const glm::dvec3 ray = grid.ray(at.x, at.y);
+    LineOfSight line{grid.position, grid.localFromCamera * ray / glm::length(ray), {}, 0.0};
+    line.hits = castRay(simulation_, state, line.origin, line.direction, grid.near_m * glm::length(ray), &present_, false, steps);
+    const std::vector<double> seen = all.shade(line, sum).slots;
+    std::vector<double> sums = slotsOf(plan, sum.ofEntity());
+    const std::vector<double> without = slotsOf(plan, sum.withoutField());
+    sums.insert(sums.end(), seen.begin(), seen.end());
+    for (std::size_t s = 0; s < seen.size(); ++s) sums.push_back(seen[s] - without[s]);
+    return sums;
+  });
   const double range2 = row.range_m * row.range_m;
   for (auto* sums : {&own, &total, &contrast})
     for (double& v : *sums) v *= range2;

@@ -47,7 +47,8 @@ TruthMeter::TruthMeter(const Simulation& simulation, const Camera& camera)
       lines_(std::clamp(kLinesAtOnePercent * std::pow(0.01 / asked_, 2.0 / 3.0), 48.0, 256.0)),
       present_(simulation.entities.size(), 1),
       plan_(measuredPlanFor(simulation, drawnCamera(camera))),
-      spectra_(std::make_shared<const NodeSpectra>(simulation, plan_.nodes, plan_.terms)) {
+      spectra_(std::make_shared<const NodeSpectra>(simulation, plan_.nodes, plan_.terms)),
+      lost_(simulation, camera, measured_, plan_, spectra_) {
   if (camera.mount.carrier >= 0) present_[static_cast<std::size_t>(camera.mount.carrier)] = 0;
   for (std::size_t o = 0; o < measured_.size(); ++o)
     if (isRadiance(measured_[o])) radianceOf_.push_back(o);
@@ -147,13 +148,15 @@ void TruthMeter::addBody(TargetRow& row, int entity, const WorldState& state) co
     return line;
   };
   const auto lineOf = [&](int x, int y, const std::vector<char>& drawn) { return lineThrough(x + 0.5, y + 0.5, drawn); };
-  const auto slotsThrough = [&](double x, double y, NodeSum& sum, NodeSum& behind) {
-    std::vector<double> all = with.shade(lineThrough(x, y, present_), sum).slots;
-    const std::vector<double> ofBody = slotsOf(plan_, sum.ofEntity()), other = without.shade(lineThrough(x, y, others), behind).slots;
-    all.insert(all.end(), ofBody.begin(), ofBody.end());
-    all.insert(all.end(), other.begin(), other.end());
-    return all;
+  // What it has of all, of the body, and of what it would have without it.
+  const auto sumsThrough = [&](double x, double y, const Plan& plan, const ReferenceShader& all, const ReferenceShader& rest, NodeSum& sum, NodeSum& behind) {
+    std::vector<double> sums = all.shade(lineThrough(x, y, present_), sum).slots;
+    const std::vector<double> ofBody = slotsOf(plan, sum.ofEntity()), other = rest.shade(lineThrough(x, y, others), behind).slots;
+    sums.insert(sums.end(), ofBody.begin(), ofBody.end());
+    sums.insert(sums.end(), other.begin(), other.end());
+    return sums;
   };
+  const auto slotsThrough = [&](double x, double y, NodeSum& sum, NodeSum& behind) { return sumsThrough(x, y, plan_, with, without, sum, behind); };
   /// Where a direction before the film is on it, distorted.
   const auto onFilm = [&](const glm::dvec3& direction) {
     const glm::dvec2 at = filmPosition(film, direction);
@@ -166,6 +169,7 @@ void TruthMeter::addBody(TargetRow& row, int entity, const WorldState& state) co
   struct Sums {
     std::vector<double> own, total, contrast;
     double whole = 0.0, visible = 0.0, seen = 0.0, left = INFINITY, top = INFINITY, right = -INFINITY, bottom = -INFINITY;
+    std::vector<TargetLine> lines;
   };
   std::vector<Sums> pieces(static_cast<std::size_t>(columns * columns));
   eachPiece(columns * columns, [&](int piece) {
@@ -210,13 +214,17 @@ void TruthMeter::addBody(TargetRow& row, int entity, const WorldState& state) co
         },
         [&](int x, int y) { return slotsThrough(x + 0.5, y + 0.5, sum, behind); }, budget::kTruthPlaces.of(asked_));
     tile.fill(x0, y0, w, h, [&](int x, int y, const std::vector<double>& all) { seen[indexOf(x, y)] = all; });
-    const auto add = [&](const std::vector<double>& all, double sr) {
+    std::vector<TargetLine> lines;
+    const auto add = [&](const std::vector<double>& all, double sr, std::size_t met, const glm::dvec2& at) {
       seenHere += sr;
+      TargetLine line{met, at, sr, std::vector<double>(slots)};
       for (std::size_t s = 0; s < slots; ++s) {
+        line.contrast[s] = all[s] - all[2 * slots + s];
         totalHere[s] += sr * all[s];
         ownHere[s] += sr * all[slots + s];
-        contrastHere[s] += sr * (all[s] - all[2 * slots + s]);
+        contrastHere[s] += sr * line.contrast[s];
       }
+      lines.push_back(std::move(line));
     };
     for (int y = y0; y < y0 + h; ++y)
       for (int x = x0; x < x0 + w; ++x) {
@@ -228,25 +236,26 @@ void TruthMeter::addBody(TargetRow& row, int entity, const WorldState& state) co
         };
         eachNeighbour([&](std::size_t k) { isEdge |= things[k] != met; });
         if (!isEdge) {
-          if (met != 0) add(seen[indexOf(x, y)], solidAngle(x, y));
+          if (met != 0) add(seen[indexOf(x, y)], solidAngle(x, y), met, {x + 0.5, y + 0.5});
           continue;
         }
         // Where a small hot part ends, areas are what counts: many lines say which, each has the light of a neighbour that meets the same.
         const double sr = solidAngle(x, y) / (kWithin * kWithin);
         for (int j = 0; j < kWithin; ++j)
           for (int i = 0; i < kWithin; ++i) {
-            const std::size_t here = thingsAt(x + (i + 0.5) / kWithin, y + (j + 0.5) / kWithin);
+            const glm::dvec2 at(x + (i + 0.5) / kWithin, y + (j + 0.5) / kWithin);
+            const std::size_t here = thingsAt(at.x, at.y);
             if (here == 0) continue;
             const std::vector<double>* light = nullptr;
             if (here == met) light = &seen[indexOf(x, y)];
             else eachNeighbour([&](std::size_t k) { light = !light && things[k] == here ? &seen[k] : light; });
-            if (light) add(*light, sr);
-            else add(slotsThrough(x + (i + 0.5) / kWithin, y + (j + 0.5) / kWithin, sum, behind), sr);
+            add(light ? *light : slotsThrough(at.x, at.y, sum, behind), sr, here, at);
           }
       }
-    pieces[static_cast<std::size_t>(piece)] = {ownHere, totalHere, contrastHere, wholeHere, visibleHere, seenHere, left, top, right, bottom};
+    pieces[static_cast<std::size_t>(piece)] = {ownHere, totalHere, contrastHere, wholeHere, visibleHere, seenHere, left, top, right, bottom, std::move(lines)};
   });
   // In their order, whichever was done first: the same bits every time.
+  std::vector<TargetLine> lines;
   for (const Sums& p : pieces) {
     whole_sr += p.whole, visible_sr += p.visible, seen_sr += p.seen;
     if (p.left <= p.right) {
@@ -254,7 +263,17 @@ void TruthMeter::addBody(TargetRow& row, int entity, const WorldState& state) co
       row.top = std::fmin(row.top, p.top), row.bottom = std::fmax(row.bottom, p.bottom);
     }
     for (std::size_t s = 0; s < slots; ++s) own[s] += p.own[s], total[s] += p.total[s], contrast[s] += p.contrast[s];
+    lines.insert(lines.end(), p.lines.begin(), p.lines.end());
   }
+  lost_.addTo({&total, &own, &contrast}, lines, [&](const glm::dvec2& at, const Plan& plan, const std::shared_ptr<const NodeSpectra>& spectra) {
+    const ReferenceShader all(simulation_, plan, z, state, present_, spectra), rest(simulation_, plan, z, state, others, spectra);
+    NodeSum sum(*spectra), behind(*spectra);
+    sum.watchEntity(entity);
+    std::vector<double> sums = sumsThrough(at.x, at.y, plan, all, rest, sum, behind);
+    const std::size_t count = sums.size() / 3;
+    for (std::size_t s = 0; s < count; ++s) sums[2 * count + s] = sums[s] - sums[2 * count + s];
+    return sums;
+  });
   row.visible = whole_sr > 0.0 ? visible_sr / whole_sr : 0.0;
   const double range2 = row.range_m * row.range_m;
   for (auto* sums : {&own, &total, &contrast})
@@ -271,10 +290,14 @@ void TruthMeter::addLamp(TargetRow& row, std::size_t light, const WorldState& st
   const glm::ivec4 window = camera_.window.value_or(glm::ivec4(0, 0, film.width, film.height));
   const bool isOnFilm = row.column >= window.x && row.row >= window.y && row.column < window.x + window.z && row.row < window.y + window.w;
   if (isOnFilm && -seen.z >= film.near_m && lightIsInView(simulation_, state, cameraView(drawnCamera(camera_), state, 1), light)) {
-    const auto way = WaysToLights(simulation_, plan_).from(state, present_, film.position, line / range, range, film.near_m * range / -seen.z);
-    if (!way.empty()) {
-      sums = apparentIntensity(simulation_, plan_, state, light, film.position, way);
+    const auto sumsBy = [&](const Plan& plan) {
+      const auto way = WaysToLights(simulation_, plan).from(state, present_, film.position, line / range, range, film.near_m * range / -seen.z);
+      return way.empty() ? std::vector<double>() : apparentIntensity(simulation_, plan, state, light, film.position, way);
+    };
+    if (std::vector<double> seenOf = sumsBy(plan_); !seenOf.empty()) {
+      sums = std::move(seenOf);
       row.visible = 1.0;
+      lost_.addTo({&sums}, {{0, {}, 1.0, sums}}, [&](const glm::dvec2&, const Plan& plan, const auto&) { return sumsBy(plan); });
     }
     row.left = row.right = row.column;
     row.top = row.bottom = row.row;

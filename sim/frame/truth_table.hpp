@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "sim/frame/frame.hpp"
+#include "sim/frame/lost_wavelengths.hpp"
 #include "sim/plan/plan.hpp"
 #include "sim/radiance/node_sum.hpp"
 #include "sim/world/world.hpp"
@@ -19,9 +20,9 @@ class TruthMeter {
   /// body: over lines of a square grid over its bounding sphere, 128 across at 1 %, six times as many where what they meet changes; worked out where they bend,
   /// linear between within a twenty-fifth of the accuracy. `own`: emission and reflection of its surfaces or its medium, through all that lies before it;
   /// `total`: all light along lines that meet it before anything opaque; `contrast`: that less what these lines would have without it. Each times range
-  /// squared. A camera within a body's sphere gets NaN. Of a plume or flare: over lines as the reference has them through a pixel, times the range of its
-  /// nozzles or flame squared; its box holds all lines along which it sends a hundredth of what it does along its brightest; `visible` is the share of what it
-  /// sends that reaches the film past what is opaque.
+  /// squared, with what the plan's wavelengths lose of them (LostWavelengths). A camera within a body's sphere gets NaN. Of a plume or flare: over lines as the
+  /// reference has them through a pixel, times the range of its nozzles or flame squared; its box holds all lines along which it sends a hundredth of what it
+  /// does along its brightest; `visible` is the share of what it sends that reaches the film past what is opaque.
   std::vector<TargetRow> targets(const WorldState& state, const StateAt& stateAt = {}) const;
 
   /// Layers `truth.terms.<channel>.<part>` [W/(m2 sr)] at pixels' middles, before the sensor's stages: emission, ambient, sun, lamp.<name> (light of that lamp
@@ -52,6 +53,7 @@ class TruthMeter {
   std::vector<char> present_;
   Plan plan_;
   std::shared_ptr<const NodeSpectra> spectra_;
+  LostWavelengths lost_;
 };
 
 }  // namespace pitviper

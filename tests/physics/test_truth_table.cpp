@@ -87,6 +87,37 @@ TEST(TruthTable, AgreesWithTheReference) {
   }
 }
 
+// Far things in a spectral air, lit by the sun: of contrasts that are a small part of their pixels' light the accuracy is kept too. In narrow bands,
+// as the reference is dear; a plume's is the dearest.
+TEST(TruthTable, FaintContrastsHaveEveryWavelength) {
+  const std::string air = "sun: {azimuth: 200 deg, elevation: 40 deg, temperature: 5772 K}\natmosphere: {library: clear_us76, visibility: 10 km}\n";
+  const std::string bodies =
+      "materials: {m: {components: [{reflection: lambertian, reflectance: 0.4}]}}\nentities: [{name: ball, shape: {model: sphere, radius: 2 m, segments: 48}, "
+      "material: m, temperature: 300 K, position: [RANGE m, 0 m, 600 m]}]\nlights: [{name: lamp, intensity: {blackbody: 1500 K, area: 0.01 m2}, position: "
+      "[RANGE m, -30 m, 600 m]}]\n";
+  const std::string plume =
+      "plumes: [{name: p, position: [RANGE m, 0 m, 600 m], direction: [0, 1, 0], length: 12 m, engine: turbofan_military, begin: -1 s}]\n";
+  const auto rows = [&](const std::string& things, const char* band, double range, const char* accuracy) {
+    std::string world = air + things +
+                        "cameras: [{name: c, film: {width: 64, height: 48, pitch: 15 um}, focal_length: 60 mm, aperture: 25 mm, truth: [targets], " +
+                        "position: [0 m, 0 m, 100 m], heading: 90 deg, pitch: " + print("%g deg", std::atan2(500.0, range) * 180.0 / kPi) +
+                        ", channels: [{name: mw, response: {band: " + band + "}}]}]\n";
+    for (size_t k = world.find("RANGE"); k != std::string::npos; k = world.find("RANGE")) world.replace(k, 5, std::to_string(range));
+    const Simulation sim = scene("accuracy: " + std::string(accuracy) + "\n" + world);
+    needContext();
+    return TruthMeter(sim, sim.cameras[0]).targets(advance(sim, 0.0));
+  };
+  const auto compare = [&](const std::string& things, const char* band, double range) {
+    const std::vector<TargetRow> planned = rows(things, band, range, "1 %"), exact = rows(things, band, range, "reference");
+    ASSERT_EQ(planned.size(), exact.size());
+    for (size_t k = 0; k < planned.size(); ++k)
+      figure("contrast of a " + planned[k].kind + print(" at %g km [W/sr]", 1e-3 * range), planned[k].channels[0].contrast, exact[k].channels[0].contrast, 0.01,
+             "as asked; it is a hundredth of its pixel's light and less");
+  };
+  compare(bodies, "[4.4 um, 4.8 um]", 25000.0);
+  compare(plume, "[4.5 um, 4.6 um]", 25000.0);
+}
+
 // What hides a body, the film's edge, the turning of the line of sight.
 TEST(TruthTable, SharesAndRates) {
   const Frame f =

@@ -15,7 +15,7 @@ import pitviper
 options = argparse.ArgumentParser(description="Signal to noise of a jet against its range, for three visibilities.", allow_abbrev=False)
 options.add_argument("--out", type=pathlib.Path, default=".", metavar="FOLDER", help="where the pictures go")
 options.add_argument("--ranges", type=int, default=16, metavar="N", help="of each visibility, between 2 and 30 km (default 16)")
-options.add_argument("--accuracy", default="0.1 %", metavar="PERCENT", help="of a pixel's light (default 0.1 %%)")
+options.add_argument("--accuracy", default="1 %", metavar="PERCENT", help="of light and of what is true of targets (default 1 %%)")
 asked, _ = options.parse_known_args()
 asked.out.mkdir(parents=True, exist_ok=True)
 
@@ -24,7 +24,7 @@ WANTED_SNR = 5.0
 # %% [markdown]
 # ## The scenario
 # That of `jet_and_sky.yaml` with a camera that has a detector, another air, and limits that the plan of its wavelengths holds for. Far
-# away the jet is a hundredth of its pixel's light and less: an accuracy of 1 % would be a fifth of its signal.
+# away the jet is a hundredth of its pixel's light and less; truth keeps the accuracy of such a difference too.
 
 # %%
 camera = {
