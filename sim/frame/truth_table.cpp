@@ -147,7 +147,6 @@ void TruthMeter::addBody(TargetRow& row, int entity, const WorldState& state) co
     line.hits = castRay(simulation_, state, line.origin, line.direction, z.near_m * glm::length(ray), &drawn);
     return line;
   };
-  const auto lineOf = [&](int x, int y, const std::vector<char>& drawn) { return lineThrough(x + 0.5, y + 0.5, drawn); };
   // What it has of all, of the body, and of what it would have without it.
   const auto sumsThrough = [&](double x, double y, const Plan& plan, const ReferenceShader& all, const ReferenceShader& rest, NodeSum& sum, NodeSum& behind) {
     std::vector<double> sums = all.shade(lineThrough(x, y, present_), sum).slots;
@@ -181,7 +180,7 @@ void TruthMeter::addBody(TargetRow& row, int entity, const WorldState& state) co
       const glm::dvec3 ray = z.ray(x + 0.5, y + 0.5);
       return z.tanPerPixelX * z.tanPerPixelY / std::pow(glm::dot(ray, ray), 1.5);
     };
-    // What a line of a place between the grid's meets: 0 where that is not this body, on the film.
+    // What a line of a place between the grid's meets, with the body and without: 0 where it does not meet it, or is not on the film.
     const auto thingsAt = [&](double x, double y) -> std::size_t {
       const glm::dvec3 ray = z.ray(x, y), direction = z.localFromCamera * ray / glm::length(ray);
       const double near = z.near_m * glm::length(ray);
@@ -191,7 +190,9 @@ void TruthMeter::addBody(TargetRow& row, int entity, const WorldState& state) co
       const glm::dvec2 at = onFilm(seen);
       if (!isOnFilm(at)) return 0;
       const RayHits hits = castRay(simulation_, state, z.position, direction, near, &present_, false, 0);
-      return meets(hits, entity) ? ReferenceShader::things(hits) : 0;
+      if (!meets(hits, entity)) return 0;
+      return ReferenceShader::things(hits) * 31 +
+             ReferenceShader::things(castRay(simulation_, state, z.position, direction, near, &others, false, kPlannedFieldSteps));
     };
     const int x0 = piece % columns * ZoomedTile::kSize, y0 = piece / columns * ZoomedTile::kSize, w = std::min(ZoomedTile::kSize, size - x0),
               h = std::min(ZoomedTile::kSize, size - y0);
@@ -210,7 +211,7 @@ void TruthMeter::addBody(TargetRow& row, int entity, const WorldState& state) co
           const std::size_t met = thingsAt(x + 0.5, y + 0.5);
           things[indexOf(x, y)] = met;
           if (met != 0) visibleHere += solidAngle(x, y);
-          return met == 0 ? 0 : met * 31 + ReferenceShader::things(lineOf(x, y, others).hits);
+          return met;
         },
         [&](int x, int y) { return slotsThrough(x + 0.5, y + 0.5, sum, behind); }, budget::kTruthPlaces.of(asked_));
     tile.fill(x0, y0, w, h, [&](int x, int y, const std::vector<double>& all) { seen[indexOf(x, y)] = all; });
