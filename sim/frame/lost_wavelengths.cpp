@@ -9,7 +9,7 @@
 namespace pitviper {
 namespace {
 
-/// With these contrasts of a jet at 24 places have a quarter of a percent left of five (tests/physics/test_truth_table.cpp has some of them).
+/// With so many, contrasts of a jet at 24 places are off by a quarter of a percent (RMS) where a plan of 1 % alone leaves 4.6 %.
 constexpr int kShares = 8;
 
 /// How many steradians of a stratum's line lose as much in a slot as all its lines: by their contrast, where the line has as much of it as they.
