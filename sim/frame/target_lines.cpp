@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <utility>
 
 namespace pitviper {
 namespace {
+
+/// A kind of things counts by itself where it has one part in so many of a share.
+constexpr double kPartsOfShare = 4.0;
 
 struct Contrast {
   const TargetLine* line;
@@ -52,8 +56,18 @@ std::vector<Stratum> strataOf(const std::vector<TargetLine>& lines, int shares) 
     its.all += own.all;
     all += own.all;
   }
-  for (auto& [things, its] : classes)
+  // However many kinds of things there are: the least of them count as one.
+  Class least;
+  for (auto& [things, its] : classes) {
+    if (its.all * shares * kPartsOfShare >= all) continue;
+    least.lines.insert(least.lines.end(), its.lines.begin(), its.lines.end());
+    least.all += std::exchange(its.all, 0.0);
+  }
+  const auto add = [&](Class& its) {
     if (its.all > 0.0) cut(its.lines, its.all, static_cast<int>(std::ceil(its.all / all * shares)), strata);
+  };
+  for (auto& [things, its] : classes) add(its);
+  add(least);
   return strata;
 }
 

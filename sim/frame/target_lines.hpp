@@ -13,14 +13,15 @@ struct TargetLine {
   std::vector<double> contrast;  ///< by slot
 };
 
-/// Lines of the same things, from the darkest to the brightest, that have a share of the contrast.
+/// Lines of the same things (or of many that are little each), from the darkest to the brightest, that have a share of the contrast.
 struct Stratum {
   const TargetLine* line;        ///< in its middle
   double sr;                     ///< of all of them
   std::vector<double> contrast;  ///< of all of them, by slot: over solid angle
 };
 
-/// About `shares` strata of as much contrast each, whatever its sign, all slots alike; one at least of each kind of things.
+/// About `shares` strata of as much contrast each, whatever its sign, all slots alike; one at least of each kind of things that has a quarter of a share, and
+/// of the others together: five times as many as shares at most, and one. They point into `lines`.
 std::vector<Stratum> strataOf(const std::vector<TargetLine>& lines, int shares);
 
 }  // namespace pitviper

@@ -1,6 +1,7 @@
 // A few lines of sight that stand for all of a target's.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -43,6 +44,18 @@ TEST(TargetLines, StrataHaveAsMuchContrastEachAndALineFromTheirMiddle) {
     EXPECT_NEAR(strata[s].contrast[0], 0.25 * 0.5 * 4.0 * 4000e-6, 1e-5);
     EXPECT_NEAR(strata[s].line->at.x, 4000.0 * std::sqrt((static_cast<double>(s) + 0.5) / 4.0), 2.0);
   }
+}
+
+TEST(TargetLines, ManyKindsOfThingsAreFewStrata) {
+  std::vector<TargetLine> all;
+  for (std::size_t k = 0; k < 1000; ++k) all.push_back({k, {k, 0.0}, 1e-6, {1.0 + 1e-3 * static_cast<double>(k)}});
+  all.push_back({5000, {-1.0, 0.0}, 1e-6, {1000.0}});
+  const std::vector<Stratum> strata = strataOf(all, 8);
+  EXPECT_LE(strata.size(), 41u);
+  double sr = 0.0;
+  for (const Stratum& s : strata) sr += s.sr;
+  EXPECT_NEAR(sr, 1001e-6, 1e-12) << "none is left out";
+  EXPECT_TRUE(std::any_of(strata.begin(), strata.end(), [](const Stratum& s) { return s.line->things == 5000 && s.sr < 2e-6; })) << "what is much is by itself";
 }
 
 TEST(TargetLines, NothingHasNoStrata) {
