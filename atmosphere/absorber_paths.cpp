@@ -1,7 +1,6 @@
 // Amounts on lines through layered air. Rays are straight; where light bends they are so over levels that stand where refraction puts them (setRefraction()).
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "atmosphere/absorber_table.hpp"
 #include "sim/radiometry/exponentials.hpp"
@@ -36,38 +35,13 @@ struct Ray {
 };
 
 // A stretch over which no logarithm of a density changes by more than twice the first, and departs from a straight line by more than the second, is summed by
-// its middle and a series: the terms left out are below 1e-9 of it.
-constexpr double kShortStretch = 0.8, kStraight = 0.03;
+// its middle and a series: the terms left out are below 2e-8 of it.
+constexpr double kShortStretch = 0.5, kStraight = 1e-3;
 
-struct Stretch {
-  double part, half, bend, weight_km;
-};
-
-/// Adds the mean of each density over a stretch; places of no absorber are 0. Densities fall as exponentials, or as straight lines where they have a rise.
-PITVIPER_WIDE void addMeans(const double* density, const double* log, const double* rise, const double* scale, size_t count, const Stretch& of, double* sum) {
-  const double straight = of.part + of.bend / 3.0;
-  for (size_t k = 0; k < count; k += wide::kLanes) {
-    wide::Reals here, falls, rises, scales, all, none{};
-    std::memcpy(&here, density + k, sizeof here);
-    std::memcpy(&falls, log + k, sizeof falls);
-    std::memcpy(&rises, rise + k, sizeof rises);
-    std::memcpy(&scales, scale + k, sizeof scales);
-    std::memcpy(&all, sum + k, sizeof all);
-    wide::Reals left = falls * of.part;
-    double four[wide::kLanes];
-    std::memcpy(four, &left, sizeof left);
-    wide::fourExponentials(four);
-    std::memcpy(&left, four, sizeof left);
-    // Mean of exp(a u + b u^2) over u from -1 to 1: the sum over j of b^j / j! by the mean of u^2j exp(a u).
-    const wide::Reals a = falls * of.half, b = falls * of.bend, a2 = a * a;
-    const wide::Reals bent0 = 1.0 + a2 * (1.0 / 6.0 + a2 * (1.0 / 120.0 + a2 * (1.0 / 5040.0 + a2 * (1.0 / 362880.0 + a2 * (1.0 / 39916800.0)))));
-    const wide::Reals bent1 = 1.0 / 3.0 + a2 * (1.0 / 10.0 + a2 * (1.0 / 168.0 + a2 * (1.0 / 6480.0 + a2 * (1.0 / 443520.0 + a2 * (1.0 / 47174400.0)))));
-    const wide::Reals bent2 = 1.0 / 10.0 + a2 * (1.0 / 28.0 + a2 * (1.0 / 432.0 + a2 * (1.0 / 15840.0 + a2 * (1.0 / 1048320.0))));
-    const wide::Reals bent3 = 1.0 / 42.0 + a2 * (1.0 / 108.0 + a2 * (1.0 / 1584.0 + a2 * (1.0 / 56160.0))), bent4 = 1.0 / 216.0 + a2 * (1.0 / 528.0);
-    const wide::Reals mean = here * left * (bent0 + b * (bent1 + b * (bent2 + b * (bent3 + b * bent4)))) + rises * straight;
-    all += scales * of.weight_km * (mean > none ? mean : none);
-    std::memcpy(sum + k, &all, sizeof all);
-  }
+// Mean of exp(a u + b u^2) over u from -1 to 1, for |a| <= kShortStretch and |b| <= kStraight.
+double meanExponential(double a, double b) {
+  const double a2 = a * a;
+  return 1.0 + a2 * (1.0 / 6.0 + a2 * (1.0 / 120.0 + a2 * (1.0 / 5040.0))) + b * (1.0 / 3.0 + a2 * (1.0 / 10.0 + a2 * (1.0 / 168.0)) + b * (1.0 / 10.0));
 }
 
 const std::vector<QuadratureNode>& unitGauss(int points) {
@@ -135,8 +109,17 @@ double AbsorberTable::partOf(size_t interval, double height_m) const {
 }
 
 void AbsorberTable::addDensities(size_t interval, double part, double weight_km, AbsorberAmounts& sum, double half, double bend) const {
-  const Level& low = levels_[interval];
-  addMeans(low.density.data(), low.logRatio.data(), low.rise.data(), scale_.data(), absorbers_.size(), {part, half, bend, weight_km}, sum.amount_km.data());
+  const Level &low = levels_[interval], &high = levels_[interval + 1];
+  const size_t count = absorbers_.size();
+  std::array<double, kMostAbsorbers> fallen{};
+  for (size_t k = 0; k < count; ++k) fallen[k] = std::isnan(low.logRatio[k]) ? 0.0 : low.logRatio[k] * part;
+  exponentials(fallen.data(), static_cast<int>(count));
+  for (size_t k = 0; k < count; ++k) {
+    const double log = low.logRatio[k];
+    const double density = std::isnan(log) ? std::max(low.density[k] + (high.density[k] - low.density[k]) * (part + bend / 3.0), 0.0)
+                                           : low.density[k] * fallen[k] * meanExponential(log * half, log * bend);
+    sum.amount_km[k] += weight_km * scale_[k] * density;
+  }
 }
 
 AbsorberAmounts AbsorberTable::densities(double height_m) const {
@@ -163,36 +146,27 @@ std::vector<double> AbsorberTable::placesOn(const Way& way, std::vector<double> 
   return cuts;
 }
 
-template <class Visit>
-void AbsorberTable::along(const Way& way, std::vector<double> cuts, int points, const Visit& visit) const {
+std::vector<PathStation> AbsorberTable::stationsOn(const Way& way, std::vector<double> cuts, int points) const {
   cuts = placesOn(way, std::move(cuts));
   const auto heightAt = [&](double s) { return heightOf(way.ray.heightAt(s)); };
   double height = heightAt(cuts.front());
-  AbsorberAmounts sum;
-  visit(cuts.front(), height, sum);
+  std::vector<PathStation> stations = {PathStation{cuts.front(), temperature_K(height), {}, height}};
+  stations.reserve(cuts.size());
   for (size_t i = 0; i + 1 < cuts.size(); ++i) {
     const double length = cuts[i + 1] - cuts[i], middle = heightAt(cuts[i] + 0.5 * length), before = height;
     const size_t interval = intervalAt(middle);
     const double path_km = 1e-3 * length * stretchOf(interval);
     height = heightAt(cuts[i + 1]);
+    PathStation& next = stations.emplace_back(PathStation{cuts[i + 1], temperature_K(height), stations.back().amounts, height});
     const double first = partOf(interval, before), last = partOf(interval, height), at = partOf(interval, middle), half = 0.5 * (last - first),
                  bend = 0.5 * (first + last) - at;
     if (steepest_[interval] * std::abs(half) <= kShortStretch && steepest_[interval] * std::abs(bend) <= kStraight) {
-      addDensities(interval, at, path_km, sum, half, bend);
-    } else {
-      for (const QuadratureNode& node : unitGauss(points))
-        addDensities(interval, partOf(interval, heightAt(cuts[i] + length * node.x)), path_km * node.weight, sum);
+      addDensities(interval, at, path_km, next.amounts, half, bend);
+      continue;
     }
-    visit(cuts[i + 1], height, sum);
+    for (const QuadratureNode& node : unitGauss(points))
+      addDensities(interval, partOf(interval, heightAt(cuts[i] + length * node.x)), path_km * node.weight, next.amounts);
   }
-}
-
-std::vector<PathStation> AbsorberTable::stationsOn(const Way& way, std::vector<double> cuts, int points) const {
-  std::vector<PathStation> stations;
-  stations.reserve(cuts.size() + way.crossed_m.size() + 3);
-  along(way, std::move(cuts), points, [&](double place, double height, const AbsorberAmounts& upTo) {
-    stations.push_back({place, temperature_K(height), upTo, height});
-  });
   return stations;
 }
 
@@ -241,10 +215,7 @@ std::vector<PathStation> AbsorberTable::stationsAt(double height_m, double sinEl
 }
 
 AbsorberAmounts AbsorberTable::amounts(double height_m, double sinElevation, double range_m, double earthRadius_m) const {
-  const Way way(*this, height_m, sinElevation, range_m, earthRadius_m);
-  AbsorberAmounts all;
-  if (!way.isEmpty()) along(way, {}, kGaussPoints, [&](double, double, const AbsorberAmounts& upTo) { all = upTo; });
-  return all;
+  return stations(height_m, sinElevation, range_m, earthRadius_m, 0).back().amounts;
 }
 
 }  // namespace pitviper

@@ -231,10 +231,9 @@ void AbsorberTable::finishLevels() {
   for (size_t i = 0; i + 1 < levels_.size(); ++i)
     for (size_t k = 0; k < absorbers_.size(); ++k) {
       const double here = levels_[i].density[k], next = levels_[i + 1].density[k];
-      const bool falls = here > 0.0 && next > 0.0;
-      levels_[i].logRatio[k] = falls ? std::log(next / here) : 0.0;
-      levels_[i].rise[k] = falls ? 0.0 : next - here;
-      steepest_[i] = std::max(steepest_[i], std::abs(levels_[i].logRatio[k]));
+      const double log = here > 0.0 && next > 0.0 ? std::log(next / here) : std::numeric_limits<double>::quiet_NaN();
+      levels_[i].logRatio[k] = log;
+      steepest_[i] = std::fmax(steepest_[i], std::abs(log));
     }
 }
 

@@ -185,8 +185,7 @@ class AbsorberTable {
     double optical_m = 0.0;  ///< where it stands for lines: at its altitude, or where refraction puts it
     double temperature_K = 0.0;
     std::array<double, kMostAbsorbers> density{};
-    std::array<double, kMostAbsorbers> logRatio{};  ///< ln of the next level's density over this one's; 0 where one of them is none, then ...
-    std::array<double, kMostAbsorbers> rise{};      ///< ... the next level's less this one's, else 0
+    std::array<double, kMostAbsorbers> logRatio{};  ///< ln of the next level's density over this one's; NaN where one of them is 0
   };
   struct Bin {
     double wavenumber_per_cm = 0.0;
@@ -207,9 +206,6 @@ class AbsorberTable {
   struct Way;
   /// Rising: these places and where densities bend.
   std::vector<double> placesOn(const Way& way, std::vector<double> cuts_m) const;
-  /// `visit(place, height, amounts up to there)` at the beginning and after each piece between cuts.
-  template <class Visit>
-  void along(const Way& way, std::vector<double> cuts_m, int points, const Visit& visit) const;
   std::vector<PathStation> stationsOn(const Way& way, std::vector<double> cuts_m, int points) const;
   static std::vector<double> closerNearBy(const Way& way, int count, std::span<const double> alsoAt_m);
   size_t intervalAt(double height_m) const;
